@@ -1,0 +1,135 @@
+#include "core/base/file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <system_error>
+#include <utility>
+
+#include "core/base/error.h"
+
+namespace ulam {
+namespace {
+
+std::string reason(int error) {
+    return std::generic_category().message(error);
+}
+
+/// An open file, closed at the end of its scope.
+class Descriptor {
+public:
+    explicit Descriptor(int number) : number_(number) {}
+    ~Descriptor() {
+        if (number_ >= 0) ::close(number_);
+    }
+    Descriptor(const Descriptor&) = delete;
+    Descriptor& operator=(const Descriptor&) = delete;
+
+    int number() const { return number_; }
+    /// False with errno where the system reports a late write error.
+    bool close() { return ::close(std::exchange(number_, -1)) == 0; }
+
+private:
+    int number_;
+};
+
+[[noreturn]] void failToWrite(const std::filesystem::path& path, int error) {
+    fail(ExitCode::CannotWrite, "cannot write {}: {}", path.string(), reason(error));
+}
+
+/// Zero, or the error.
+int writeAll(int file, std::string_view bytes) {
+    while (!bytes.empty()) {
+        const ssize_t written = ::write(file, bytes.data(), bytes.size());
+        if (written < 0) {
+            if (errno == EINTR) continue;
+            return errno;
+        }
+        bytes.remove_prefix(static_cast<std::size_t>(written));
+    }
+    return 0;
+}
+
+int writeFlushClose(Descriptor& file, std::string_view bytes) {
+    if (const int error = writeAll(file.number(), bytes)) return error;
+    // Pipes and devices have nothing to flush and say EINVAL or ENOTSUP.
+    if (::fsync(file.number()) != 0 && errno != EINVAL && errno != ENOTSUP) return errno;
+    return file.close() ? 0 : errno;
+}
+
+/// The file behind symbolic links, or the path itself where there is none yet.
+std::filesystem::path behindLinks(const std::filesystem::path& path) {
+    std::error_code error;
+    auto target = path;
+    for (int step = 0; step < 40 && std::filesystem::is_symlink(target, error); ++step) {
+        const auto next = std::filesystem::read_symlink(target, error);
+        if (error) failToWrite(path, error.value());
+        target = target.parent_path() / next;
+    }
+    if (std::filesystem::is_symlink(target, error)) failToWrite(path, ELOOP);
+    return target;
+}
+
+}  // namespace
+
+std::string readFile(const std::filesystem::path& path, std::size_t maxBytes) {
+    const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+    if (file.number() < 0) fail(ExitCode::InputMissing, "cannot read {}: {}", path.string(), reason(errno));
+    std::string bytes;
+    struct stat status {};
+    if (::fstat(file.number(), &status) == 0 && S_ISREG(status.st_mode))
+        bytes.reserve(std::min(maxBytes, static_cast<std::size_t>(status.st_size)));
+    char block[1 << 16];
+    for (;;) {
+        const ssize_t count = ::read(file.number(), block, sizeof block);
+        if (count == 0) return bytes;
+        if (count < 0) {
+            if (errno == EINTR) continue;
+            fail(ExitCode::InputMissing, "cannot read {}: {}", path.string(), reason(errno));
+        }
+        if (static_cast<std::size_t>(count) > maxBytes - bytes.size())
+            fail(ExitCode::InvalidConfig, "{} holds more than {} bytes", path.string(), maxBytes);
+        bytes.append(block, static_cast<std::size_t>(count));
+    }
+}
+
+void writeFileAtomically(const std::filesystem::path& path, std::string_view bytes) {
+    const std::filesystem::path target = behindLinks(path);
+    struct stat status {};
+    const bool exists = ::stat(target.c_str(), &status) == 0;
+    if (exists && S_ISDIR(status.st_mode)) failToWrite(path, EISDIR);
+    if (exists && !S_ISREG(status.st_mode)) {
+        Descriptor file(::open(target.c_str(), O_WRONLY | O_CLOEXEC));
+        if (file.number() < 0) failToWrite(path, errno);
+        if (const int error = writeFlushClose(file, bytes)) failToWrite(path, error);
+        return;
+    }
+
+    // Short, so that it fits wherever the final name does; taken names are left over from a killed process.
+    static std::atomic<unsigned> counter = 0;
+    const auto folder = target.has_parent_path() ? target.parent_path() : std::filesystem::path(".");
+    std::filesystem::path temporary;
+    int number = -1;
+    do {
+        temporary = folder / fmt::format(".ulam-{}-{}.tmp", ::getpid(), counter++);
+        number = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    } while (number < 0 && errno == EEXIST);
+    Descriptor file(number);
+    if (number < 0) failToWrite(path, errno);
+
+    int error = writeFlushClose(file, bytes);
+    if (!error && ::rename(temporary.c_str(), target.c_str()) != 0) error = errno;
+    if (error) {
+        ::unlink(temporary.c_str());
+        failToWrite(path, error);
+    }
+    // The new name itself reaches the disk with the folder; not every file system can flush one, and the data is safe.
+    const Descriptor directory(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    if (directory.number() >= 0) ::fsync(directory.number());
+}
+
+}  // namespace ulam

@@ -1,0 +1,22 @@
+#pragma once
+// Whole files in and out.
+
+#include <cstddef>
+#include <filesystem>
+#include <limits>
+#include <string>
+#include <string_view>
+
+namespace ulam {
+
+/// The bytes of a file. Fails with InputMissing and the system's reason when it cannot be opened or read, and with
+/// InvalidConfig when it holds more than `maxBytes`.
+std::string readFile(const std::filesystem::path& path, std::size_t maxBytes = std::numeric_limits<std::size_t>::max());
+
+/// Replaces a file so that readers, and a run continued after a kill, see all of the old bytes or all of the new ones:
+/// a temporary file in the same folder is written, flushed to disk and renamed. A symbolic link is followed; what is
+/// not a regular file (a device, a pipe) is written in place. Fails with CannotWrite and the system's reason, leaving
+/// the old file untouched and no temporary file behind. The folder must exist.
+void writeFileAtomically(const std::filesystem::path& path, std::string_view bytes);
+
+}  // namespace ulam

@@ -1,0 +1,69 @@
+#pragma once
+// The film: what the samples of one worker add up to. Sums are exact in fixed point, so films merge in any order.
+
+#include "core/base/fixed_sum.h"
+#include "core/image/filter.h"
+#include "core/image/image.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace ulam {
+
+/// One colour per pixel.
+class FilmPlane {
+public:
+    FilmPlane() = default;
+    explicit FilmPlane(size_t pixels) : sums_(pixels) {}
+    bool empty() const { return sums_.empty(); }
+    void add(size_t pixel, double r, double g, double b) {
+        sums_[pixel][0].add(r);
+        sums_[pixel][1].add(g);
+        sums_[pixel][2].add(b);
+    }
+    void add(const FilmPlane& other);
+    Spectrum operator[](size_t pixel) const {
+        return {sums_[pixel][0].value(), sums_[pixel][1].value(), sums_[pixel][2].value()};
+    }
+
+private:
+    std::vector<std::array<FixedSum, 3>> sums_;
+};
+
+/// Two estimators side by side, whose expectations add up to the image:
+/// the mean of the samples taken for a pixel, and a density of splats over the raster.
+class Film {
+public:
+    Film(int width, int height, const ReconstructionFilter& filter) : width_(width), height_(height), filter_(filter) {}
+
+    int width() const { return width_; }
+    int height() const { return height_; }
+    int pixels() const { return width_ * height_; }
+
+    /// A camera sample of a pixel, its raster offset drawn from the filter: E = radiance convolved with the filter.
+    void addSample(int pixel, const Spectrum& value);
+    /// A sample of a pixel that found no light: it counts in the mean.
+    void countSample(int pixel);
+    /// Spreads a value over the pixels around a raster position (pixels from the upper left corner).
+    void splat(const Vec2f& raster, const Spectrum& value);
+
+    void merge(const Film& other);
+    uint64_t nonFinite() const { return nonFinite_; }
+
+    /// Means of the samples plus splatScale × splats.
+    Image develop(double splatScale) const { return developCountedBy(*this, splatScale); }
+    /// The same where another film counted the samples (films that share them out, by technique say).
+    Image developCountedBy(const Film& counter, double splatScale) const;
+
+private:
+    bool accept(const Spectrum& value);
+
+    int width_, height_;
+    ReconstructionFilter filter_;
+    FilmPlane samples_, splats_;
+    std::vector<uint32_t> counts_;
+    uint64_t nonFinite_ = 0;
+};
+
+}  // namespace ulam

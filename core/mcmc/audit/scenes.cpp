@@ -1,0 +1,132 @@
+#include "core/mcmc/audit/scenes.h"
+
+#include "core/scene/load.h"
+
+namespace ulam::audit {
+namespace {
+
+constexpr int kFilmSize = 32;
+
+Json translate(double x, double y, double z) {
+    return {{"type", "translate"}, {"value", {x, y, z}}};
+}
+Json rotate(const char axis, double degrees) {
+    return {{"type", "rotate"},
+            {"axis", {double(axis == 'x'), double(axis == 'y'), double(axis == 'z')}},
+            {"angle", degrees}};
+}
+Json scale(double x, double y, double z) {
+    return {{"type", "scale"}, {"value", {x, y, z}}};
+}
+Json diffuse(double r, double g, double b) {
+    return {{"type", "diffuse"}, {"reflectance", {r, g, b}}};
+}
+Json shape(const char* type, std::vector<Json> steps, Json bsdf) {
+    return {{"type", type}, {"to_world", steps}, {"bsdf", std::move(bsdf)}};
+}
+Json sphere(double x, double y, double z, double radius, Json bsdf) {
+    return {{"type", "sphere"}, {"center", {x, y, z}}, {"radius", radius}, {"bsdf", std::move(bsdf)}};
+}
+
+Json camera(double x, double y, double z, double fov) {
+    return {
+        {"type", "perspective"},
+        {"fov", fov},
+        {"to_world",
+         Json::array({{{"type", "lookat"}, {"origin", {x, y, z}}, {"target", {0, 0, 0}}, {"up", {0, 1, 0}}}})},
+        {"film", {{"type", "hdrfilm"}, {"width", kFilmSize}, {"height", kFilmSize}, {"rfilter", {{"type", "box"}}}}}};
+}
+
+/// A room of the size 2 × 2 × 2 without its front, lit from the ceiling.
+Json box() {
+    Json scene = {{"type", "scene"}, {"sensor", camera(0, 0, 3.7, 39)}};
+    scene["back"] = shape("rectangle", {translate(0, 0, -1)}, diffuse(0.7, 0.7, 0.65));
+    scene["floor"] = shape("rectangle", {rotate('x', -90), translate(0, -1, 0)}, diffuse(0.7, 0.7, 0.7));
+    scene["ceiling"] = shape("rectangle", {rotate('x', 90), translate(0, 1, 0)}, diffuse(0.6, 0.6, 0.6));
+    scene["left"] = shape("rectangle", {rotate('y', 90), translate(-1, 0, 0)}, diffuse(0.6, 0.1, 0.1));
+    scene["right"] = shape("rectangle", {rotate('y', -90), translate(1, 0, 0)}, diffuse(0.1, 0.5, 0.1));
+    scene["light"] =
+        shape("rectangle", {scale(0.5, 0.5, 1), rotate('x', 90), translate(0, 0.98, 0.1)}, diffuse(0, 0, 0));
+    scene["light"]["emitter"] = {{"type", "area"}, {"radiance", {5, 4.5, 4}}};
+    return scene;
+}
+
+Json block(Json bsdf) {
+    return shape("cube", {scale(0.3, 0.5, 0.3), rotate('y', 20), translate(0.4, -0.5, -0.35)}, std::move(bsdf));
+}
+
+Json diffuseBox() {
+    Json scene = box();
+    scene["block"] = block(diffuse(0.5, 0.5, 0.7));
+    return scene;
+}
+
+Json specularBox() {
+    Json scene = box();
+    scene["mirror"] = block({{"type", "conductor"}});
+    scene["glass"] = sphere(-0.35, -0.55, 0.25, 0.4, {{"type", "dielectric"}});
+    return scene;
+}
+
+/// An icosahedron shaded like the sphere around it.
+Json smoothSolid(double radius, Json bsdf) {
+    const double golden = (1 + std::sqrt(5.0)) / 2, unit = 1 / std::sqrt(1 + golden * golden);
+    std::vector<double> normals, positions;
+    for (int axis = 0; axis < 3; ++axis)
+        for (double a : {-1.0, 1.0})
+            for (double b : {-golden, golden}) {
+                std::array<double, 3> v{};
+                v[size_t(axis + 1) % 3] = a * unit, v[size_t(axis + 2) % 3] = b * unit;
+                normals.insert(normals.end(), v.begin(), v.end());
+            }
+    for (double x : normals) positions.push_back(x * radius);
+    const auto corner = [&](size_t i) { return Vec3d(normals[3 * i], normals[3 * i + 1], normals[3 * i + 2]); };
+    std::vector<int> triangles;
+    const double edge = 2.01 * unit;
+    for (size_t i = 0; i < 12; ++i)
+        for (size_t j = i + 1; j < 12; ++j)
+            for (size_t k = j + 1; k < 12; ++k) {
+                const Vec3d a = corner(i), b = corner(j), c = corner(k);
+                if ((a - b).length() > edge || (b - c).length() > edge || (a - c).length() > edge) continue;
+                const bool outwards = (b - a).cross(c - a).dot(a) > 0;
+                for (size_t n : {i, outwards ? j : k, outwards ? k : j}) triangles.push_back(int(n));
+            }
+    return {{"type", "mesh"},
+            {"positions", positions},
+            {"normals", normals},
+            {"triangles", triangles},
+            {"bsdf", std::move(bsdf)}};
+}
+
+Json outdoors() {
+    Json scene = {{"type", "scene"}, {"sensor", camera(0, 1.4, 4, 40)}};
+    scene["ground"] =
+        shape("rectangle", {scale(2.5, 2.5, 1), rotate('x', -90), translate(0, -0.7, 0)}, diffuse(0.6, 0.5, 0.4));
+    scene["solid"] = smoothSolid(0.6, {{"type", "twosided"}, {"bsdf", diffuse(0.7, 0.3, 0.3)}});
+    scene["ball"] = sphere(1.0, -0.35, 0.3, 0.35, diffuse(0.3, 0.4, 0.7));
+    scene["lamp"] = {{"type", "point"}, {"position", {-1.2, 1.3, 1.0}}, {"intensity", {3, 3, 2.5}}};
+    scene["sky"] = {{"type", "constant"}, {"radiance", {0.4, 0.5, 0.6}}};
+    return scene;
+}
+
+std::unique_ptr<const AuditScene> make(const char* name, const char* holds, Json dictionary) {
+    Scene scene = SceneDescription::fromNode(JsonNode(dictionary), ".").build();
+    return std::make_unique<const AuditScene>(name, holds, std::move(dictionary), std::move(scene), PathLimits{6, 3});
+}
+
+std::vector<std::unique_ptr<const AuditScene>> makeAll() {
+    std::vector<std::unique_ptr<const AuditScene>> scenes;
+    scenes.push_back(make("diffuse", "box with an area light and a block", diffuseBox()));
+    scenes.push_back(make("specular", "the box with a glass sphere and a mirror", specularBox()));
+    scenes.push_back(make("outdoor", "point light, environment, smooth normals", outdoors()));
+    return scenes;
+}
+
+}  // namespace
+
+const std::vector<std::unique_ptr<const AuditScene>>& auditScenes() {
+    static const auto scenes = makeAll();
+    return scenes;
+}
+
+}  // namespace ulam::audit

@@ -1,0 +1,147 @@
+#include "core/mcmc/audit/structure.h"
+
+#include "core/path/validate.h"
+
+namespace ulam::audit {
+namespace {
+
+// More than a proposal uses; what a script does not cover is drawn as usual.
+constexpr size_t kScriptBlocks = 48;
+constexpr double kSmallest = 0x1p-33, kLargest = 1 - 0x1p-33;
+
+bool extreme(uint64_t trial) {
+    return trial % 16 >= 12;
+}
+
+/// The random numbers of a trial: ordinary for three quarters of them, then all smallest, all largest, or each of
+/// either kind or ordinary.
+std::vector<Block> scriptOf(RandomKey key, uint64_t trial) {
+    std::vector<Block> script;
+    if (!extreme(trial)) return script;
+    const uint64_t kind = trial % 16;
+    Random values = randomOf(key, Stream::Structure, trial), choices = randomOf(key, Stream::Edges, trial);
+    for (size_t b = 0; b < kScriptBlocks; ++b) {
+        script.push_back(values.nextBlock());
+        for (double& u : script.back()) {
+            const double choice = kind == 12 ? 0 : kind == 13 ? 0.2 : choices();
+            u = choice < 0.15 ? kSmallest : choice < 0.3 ? kLargest : u;
+        }
+    }
+    return script;
+}
+
+bool sameFactors(const Scene& scene, const Sample& y) {
+    Sample again;
+    again.path = y.path;
+    if (!evaluate(scene, again.path, again.factors)) return false;
+    Sample stated;
+    stated.path = y.path;
+    stated.factors = y.factors;
+    return usedBytes(again) == usedBytes(stated);
+}
+
+class Trial : StepObserver {
+public:
+    Trial(const AuditScene& scene, const Subject& subject, RandomKey key, StructureTally& tally)
+        : scene_(scene),
+          subject_(subject),
+          key_(key),
+          target_(subject.makeTarget(scene)),
+          kernel_(subject.mix()),
+          tally_(tally) {}
+
+    void run(const Sample& state, uint64_t trial) {
+        trial_ = trial;
+        ++tally_.trials;
+        chain_.x = state;
+        const bool primary = subject_.mutation().space() == Space::Primary;
+        if (primary && subject_.target() == Space::Path) {
+            Random random = randomOf(key_, Stream::Normal, trial);
+            if (!std::isfinite(target_->redrawTechnique(chain_.x, random, !subject_.mutation().isLargeStep()))) return;
+        }
+        const std::vector<Block> script = scriptOf(key_, trial);
+        propose(script, primary);
+
+        kernel_.enter(chain_);
+        Random random(key_, uint32_t(Stream::Structure), trial, script);
+        StepContext context{random, target_->tracing(), scene_.limits};
+        kernel_.step(chain_, *target_, context, *this);
+    }
+
+private:
+    void propose(const std::vector<Block>& script, bool primary) {
+        const Sample& x = chain_.x;
+        const std::string before = usedBytes(x);
+        Random first(key_, uint32_t(Stream::Structure), trial_, script), second = first;
+        StepContext context{first, target_->tracing(), scene_.limits},
+            repeated{second, target_->tracing(), scene_.limits};
+        Proposal p = subject_.mutation().propose(x, context);
+        const Proposal q = subject_.mutation().propose(x, repeated);
+        check(usedBytes(x) == before, "propose changed the current state");
+        check(p.reject == q.reject, "the same seed was rejected for another reason");
+        if (p.reject != Reject::None) {
+            ++tally_.rejected[size_t(p.reject)];
+            return;
+        }
+        ++tally_.proposals;
+        check(usedBytes(p.y) == usedBytes(q.y), "the same seed gave another proposal");
+        const std::array<double, 3> logs{p.logForward, p.logReverse, p.logJacobian},
+            again{q.logForward, q.logReverse, q.logJacobian};
+        check(std::equal(logs.begin(), logs.end(), again.begin()),
+              "the same seed gave other densities, or they are not numbers");
+        if (primary) {
+            p.y.technique = x.technique;
+            if (target_->evaluateNumbers(p.y, first) != Reject::None) return;
+        }
+        if (subject_.target() == Space::Primary) return;
+        const auto violation = validate(target_->tracing(), scene_.limits, p.y.path, p.y.factors);
+        if (violation)
+            fail(*violation);
+        else
+            check(sameFactors(scene_.scene, p.y), "the factors differ from those computed from scratch");
+    }
+
+    void observe(const Chain&, const Proposal& proposal, const StepInfo& info) override {
+        check(info.acceptance >= 0 && info.acceptance <= 1, fmt::format("acceptance {}", info.acceptance));
+        tally_.notFinite += info.reject == Reject::NotFinite && !extreme(trial_);
+        if (info.reject != Reject::None) return;
+        check(std::isfinite(proposal.y.logTarget), fmt::format("log target {}", proposal.y.logTarget));
+        for (int i = 0; i < proposal.y.splats.size(); ++i)
+            check(isFinite(proposal.y.splats[i].value) && std::isfinite(proposal.y.splats[i].raster.length2()),
+                  "a splat is not finite");
+    }
+
+    void check(bool good, const std::string& message) {
+        if (!good) fail(message);
+    }
+    void fail(const std::string& message) {
+        tally_.failures.add(trial_, fmt::format("{} (state {})", message, pathClass(chain_.x.path)));
+    }
+
+    const AuditScene& scene_;
+    const Subject& subject_;
+    RandomKey key_;
+    std::unique_ptr<Target> target_;
+    Kernel kernel_;
+    StructureTally& tally_;
+    Chain chain_;
+    uint64_t trial_ = 0;
+};
+
+}  // namespace
+
+void StructureTally::merge(const StructureTally& later) {
+    trials += later.trials, proposals += later.proposals, notFinite += later.notFinite;
+    for (size_t i = 0; i < rejected.size(); ++i) rejected[i] += later.rejected[i];
+    failures.merge(later.failures);
+}
+
+StructureTally auditStructure(const AuditScene& scene, const Subject& subject, const States& states, RandomKey key,
+                              uint64_t begin, uint64_t end) {
+    StructureTally tally;
+    Trial trial(scene, subject, key, tally);
+    for (uint64_t t = begin; t < end; ++t) trial.run(states.x[t % states.x.size()], t);
+    return tally;
+}
+
+}  // namespace ulam::audit

@@ -1,0 +1,145 @@
+#include "core/mcmc/audit/subject.h"
+
+#include <map>
+
+namespace ulam::audit {
+
+void Failures::add(uint64_t trial, std::string message) {
+    ++count_;
+    if (first_.size() < kKept) first_.push_back({trial, std::move(message)});
+}
+
+void Failures::merge(const Failures& later) {
+    count_ += later.count_;
+    for (const Failure& f : later.first_)
+        if (first_.size() < kKept) first_.push_back(f);
+}
+
+Subject::Subject(const std::string& mutation, Space target, const std::vector<std::string>& partners)
+    : target_(target), importance_(makeImportance("luminance")) {
+    Json config = {{mutation, {{"weight", 1}}}};
+    // Unequal weights, none of them 1: a forgotten selection ratio cannot cancel.
+    double weight = 0.37;
+    for (const std::string& partner : partners) {
+        config[partner] = {{"weight", weight}};
+        weight = weight > 1 ? weight * 0.41 : weight * 1.7;
+    }
+    mix_ = MutationMix::fromConfig(JsonNode(config), target);
+}
+
+std::unique_ptr<Target> Subject::makeTarget(const AuditScene& scene) const {
+    BidirectionalOptions options;
+    options.limits = scene.limits;
+    return target_ == Space::Path ? makePathTarget(scene.scene, options, *importance_)
+                                  : makePrimaryTarget(scene.scene, options, *importance_);
+}
+
+std::vector<std::string> partnersOf(const std::string& mutation, Space target) {
+    std::vector<std::string> names;
+    for (const auto* entry : Registry<Mutation>::instance().entries()) {
+        const auto made = entry->create(JsonNode(Json{{"type", entry->name}}));
+        if (entry->name != mutation && (target == Space::Path || made->space() == Space::Primary))
+            names.push_back(entry->name);
+    }
+    return names;
+}
+
+States drawStates(const AuditScene& scene, const Subject& subject, RandomKey key, uint64_t samples, size_t count) {
+    const auto target = subject.makeTarget(scene);
+    const auto seed = [&](uint64_t i, Sample& x) {
+        Random random = randomOf(key, Stream::Bootstrap, i);
+        return target->seed(random, randomOf(key, Stream::Choice, i)(), x);
+    };
+    States states;
+    std::vector<uint64_t> suitable;
+    std::vector<double> weights;
+    std::map<std::string, std::vector<uint64_t>> byClass;
+    std::array<uint64_t, 2> ends{};  // a shortest and a longest path
+    std::array<bool, 2> found{};
+    Sample x;
+    for (uint64_t i = 0; i < samples; ++i) {
+        Random random = randomOf(key, Stream::Bootstrap, i);
+        const double w = target->bootstrapWeight(random);
+        if (!(w > 0) || !seed(i, x)) continue;
+        ++states.positive;
+        if (!(subject.mutation().suitability(x) > 0)) continue;
+        suitable.push_back(i);
+        weights.push_back(w);
+        byClass[pathClass(x.path)].push_back(i);
+        for (size_t end : {0u, 1u})
+            if (!found[end] && x.path.length() == (end == 0 ? 1 : scene.limits.maxDepth))
+                ends[end] = i, found[end] = true;
+    }
+    states.drawn = samples;
+    states.suitable = suitable.size();
+    if (suitable.empty()) return states;
+
+    std::vector<uint64_t> chosen;
+    for (size_t end : {0u, 1u})
+        if (found[end]) chosen.push_back(ends[end]);
+    const DiscreteDistribution byWeight(weights);
+    const size_t resampled = chosen.size() + (count + 1) / 2;
+    for (size_t n = 0; chosen.size() < std::min(count, resampled); ++n) {
+        double u = (double(n) + 0.5) / double((count + 1) / 2);
+        chosen.push_back(suitable[byWeight.sample(u)]);
+    }
+    for (size_t turn = 0; chosen.size() < count; ++turn)
+        for (const auto& [name, members] : byClass)
+            if (chosen.size() < count) chosen.push_back(members[turn % members.size()]);
+    for (uint64_t i : chosen)
+        if (seed(i, x)) states.x.push_back(x);
+    return states;
+}
+
+namespace {
+
+class Bytes {
+public:
+    template <class T>
+    requires std::is_arithmetic_v<T> || std::is_enum_v<T>
+    void add(const T& value) { out.append(reinterpret_cast<const char*>(&value), sizeof value); }
+    template <class T>
+    void add(const Imath::Vec3<T>& v) {
+        add(v.x), add(v.y), add(v.z);
+    }
+    void add(const Vec2f& v) { add(v.x), add(v.y); }
+    void add(const Vertex& v) {
+        add(v.kind), add(v.position), add(v.shape);
+        if (!v.onSurface()) return;
+        add(v.normal), add(v.shadingNormal), add(v.uv), add(v.primitive), add(v.lobe);
+    }
+    void add(const Edge& e) { add(e.direction), add(e.cosA), add(e.cosB), add(e.inverseD2); }
+    void add(const Scattering& s) { add(s.f), add(s.pdfToCamera), add(s.pdfToLight); }
+
+    std::string out;
+};
+
+}  // namespace
+
+std::string usedBytes(const Sample& x) {
+    Bytes bytes;
+    for (int s = 0; s < kStreams; ++s)
+        for (int i = 0; i < x.u.size(NumberStream(s)); ++i)
+            for (double u : x.u(NumberStream(s), i)) bytes.add(u);
+    bytes.add(x.technique.s), bytes.add(x.technique.t);
+    const int size = x.path.size();
+    bytes.add(size);
+    for (int i = 0; i < size; ++i) bytes.add(x.path[i]), bytes.add(x.factors.at[size_t(i)]);
+    for (int i = 0; i + 1 < size; ++i) bytes.add(x.factors.edge[size_t(i)]);
+    bytes.add(x.logDensity), bytes.add(x.logTarget);
+    for (int i = 0; i < x.splats.size(); ++i)
+        bytes.add(x.splats[i].raster), bytes.add(x.splats[i].value), bytes.add(x.splats[i].feature);
+    return std::move(bytes.out);
+}
+
+std::string pathClass(const Path& path) {
+    std::string text;
+    for (int i = 0; i < path.size(); ++i) {
+        const Vertex& v = path[i];
+        const char lobe = v.lobe == Lobe::Smooth ? 'S' : v.lobe == Lobe::DeltaReflection ? 'R' : 'T';
+        text += v.kind == Vertex::Kind::Point ? 'P' : v.kind == Vertex::Kind::Infinite ? 'I' : lobe;
+    }
+    return text;
+}
+
+}  // namespace ulam::audit

@@ -1,0 +1,60 @@
+#include "core/mcmc/lens_perturbation.h"
+
+namespace ulam {
+
+int LensPerturbation::end(const Path& x, int& turns) {
+    turns = 0;
+    for (int m = x.length() - 1; m > 0; --m) {
+        if (isDelta(x[m].lobe)) continue;
+        if (!isDelta(x[m - 1].lobe)) return m;
+        ++turns;
+    }
+    return hittable(x.light()) ? 0 : -1;
+}
+
+Proposal LensPerturbation::propose(const Sample& x, int m, StepContext& context) const {
+    Proposal p;
+    const Scene& scene = context.scene();
+    const int k = x.path.length();
+    const Vec2f raster = raster_.sample(x.splats[0].raster, context.random.nextBlock());
+    const auto& window = scene.sensor->window();
+    if (raster.x < window.min.x || raster.x >= window.max.x || raster.y < window.min.y || raster.y >= window.max.y)
+        return p.reject = Reject::OffScreen, p;
+
+    PathEdit edit(x, m - 1, k, k - m + 1, context, p.y);
+    if ((p.reject = edit.growFromCameraAlong(scene.sensor->direction(raster))) != Reject::None) return p;
+    for (int i = k - 1; i > m; --i) {
+        if (isDelta(x.path[i].lobe)) {
+            p.reject = edit.followFromCamera(x.path[i].lobe);
+        } else {
+            const Vec3f w = -x.factors.edge[i - 1].direction;
+            p.y.path[i].lobe = Lobe::Smooth;
+            p.reject = edit.growFromCameraAlong(direction_.sample(w, context.random.nextBlock()));
+        }
+        if (p.reject != Reject::None) return p;
+    }
+    if ((p.reject = edit.join()) != Reject::None) return p;
+    p.logForward = logDensity(scene, x, p.y, m);
+    p.logReverse = logDensity(scene, p.y, x, m);
+    return p;
+}
+
+double LensPerturbation::logDensity(const Scene& scene, const Sample& from, const Sample& to, int m) const {
+    const int k = to.path.length();
+    const auto rasterOf = [&](const Sample& s) { return scene.sensor->raster(-s.factors.edge[k - 1].direction); };
+    const auto a = rasterOf(from), b = rasterOf(to);
+    if (!a || !b) return -std::numeric_limits<double>::infinity();
+    // fromCamera(k−1) is the density of a uniform raster position, 1 / window area per pixel².
+    double sum = std::log(raster_.pdf(*a, *b) * scene.sensor->windowArea() * to.factors.fromCamera(k - 1));
+    for (int i = k - 2; i >= m; --i) {
+        if (isDelta(to.path[i + 1].lobe)) {
+            sum += logFollowedFromCamera(scene, to.path, to.factors, i);
+        } else {
+            const double pdf = direction_.pdf(from.factors.edge[i].direction, to.factors.edge[i].direction);
+            sum += std::log(to.factors.edge[i].toAreaA(pdf));
+        }
+    }
+    return sum;
+}
+
+}  // namespace ulam

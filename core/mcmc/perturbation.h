@@ -1,0 +1,74 @@
+#pragma once
+// Perturbations (Veach 1997, §11.4.3): a direction is changed a little and followed through the same specular bounces.
+
+#include "core/mcmc/path_edit.h"
+
+namespace ulam {
+
+/// A length between `smallest` and `largest`, its logarithm uniform; turned by a uniform angle it is a step in the plane.
+struct ExponentialStep {
+    double smallest, largest;
+    double rounding;  ///< of the single-precision geometry a length is measured in; widens the ends
+
+    double sample(double u) const { return largest * std::exp(-std::log(largest / smallest) * u); }
+    /// Density of the length.
+    double pdf(double length) const {
+        if (!(length > 0 && length > smallest - rounding && length < largest + rounding)) return 0;
+        return 1 / (length * std::log(largest / smallest));
+    }
+};
+
+/// Steps of the raster position.
+struct RasterPerturbation {
+    RasterPerturbation() = default;
+    RasterPerturbation(double smallest, double largest) : radius{smallest, largest, 2e-3} {}
+
+    ExponentialStep radius;  ///< pixels
+
+    Vec2f sample(const Vec2f& from, const Block& u) const {
+        const double r = radius.sample(u[0]), phi = 2 * kPi * u[1];
+        return {float(from.x + r * std::cos(phi)), float(from.y + r * std::sin(phi))};
+    }
+    /// Per pixel².
+    double pdf(const Vec2f& from, const Vec2f& to) const {
+        const double x = double(to.x) - from.x, y = double(to.y) - from.y, r = std::sqrt(x * x + y * y);
+        return radius.pdf(r) / (2 * kPi * r);
+    }
+};
+
+/// Steps of a direction.
+struct AnglePerturbation {
+    AnglePerturbation() = default;
+    AnglePerturbation(double smallest, double largest) : angle{smallest, largest, 1e-5} {}
+
+    ExponentialStep angle;  ///< radians
+
+    Vec3f sample(const Vec3f& from, const Block& u) const {
+        const double theta = angle.sample(u[0]), phi = 2 * kPi * u[1];
+        const float s = float(std::sin(theta));
+        return normalize(Frame(from).toWorld({s * float(std::cos(phi)), s * float(std::sin(phi)), float(std::cos(theta))}));
+    }
+    /// Per solid angle.
+    double pdf(const Vec3f& from, const Vec3f& to) const {
+        const Imath::V3d c = Imath::V3d(from).cross(Imath::V3d(to));
+        const double s = c.length(), theta = std::atan2(s, double(dot(from, to)));
+        return angle.pdf(theta) / (2 * kPi * s);
+    }
+};
+
+/// Indices of the vertices next to the camera: the first that is not delta, counted from the camera (0 if none is).
+inline int firstSmoothFromCamera(const Path& path) {
+    int i = path.length() - 1;
+    while (i > 0 && isDelta(path[i].lobe)) --i;
+    return i;
+}
+
+/// log density of x_i by a walk from the camera that was told the delta lobe at x_{i+1}.
+inline double logFollowedFromCamera(const Scene& scene, const Path& path, const PathFactors& f, int i) {
+    return std::log(f.fromCamera(i) / lobeProbability(scene, path[i + 1], f.edge[i + 1].direction, -f.edge[i].direction));
+}
+inline double logFollowedFromLight(const Scene& scene, const Path& path, const PathFactors& f, int i) {
+    return std::log(f.fromLight(i) / lobeProbability(scene, path[i - 1], -f.edge[i - 2].direction, f.edge[i - 1].direction));
+}
+
+}  // namespace ulam

@@ -1,0 +1,36 @@
+#pragma once
+// Where a chain has been: a few scalars of its state at even intervals, for convergence diagnostics.
+
+#include "core/mcmc/sample.h"
+
+#include <vector>
+
+namespace ulam {
+
+class ChainTrace {
+public:
+    static constexpr int kScalars = 5;
+    static constexpr const char* kNames[kScalars] = {"raster_x", "raster_y", "log_target", "path_length", "feature"};
+    using Draw = std::array<float, kScalars>;
+
+    /// Called once a turn; keeps every stride-th state, at most kMost of them.
+    void record(const Sample& x, uint32_t feature) {
+        if (turn_++ % stride_ != 0) return;
+        const Vec2f r = x.splats[0].raster;
+        draws_.push_back({r.x, r.y, float(x.logTarget), float(x.path.length()), feature == kNone ? -1.0f : float(feature)});
+        if (draws_.size() < kMost) return;
+        for (size_t i = 0; 2 * i < draws_.size(); ++i) draws_[i] = draws_[2 * i];
+        draws_.resize(draws_.size() / 2);
+        stride_ *= 2;
+    }
+    void reserve() { draws_.reserve(kMost); }
+
+    const std::vector<Draw>& draws() const { return draws_; }
+
+private:
+    static constexpr size_t kMost = 256;
+    std::vector<Draw> draws_;
+    uint64_t turn_ = 0, stride_ = 1;
+};
+
+}  // namespace ulam

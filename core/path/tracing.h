@@ -1,0 +1,60 @@
+#pragma once
+// Rays between vertices: where a walk goes next, and whether two vertices see each other.
+
+#include "core/path/measure.h"
+#include "core/scene/scene.h"
+
+namespace ulam {
+
+/// One thread's access to the ray tracer; counts its rays.
+class Tracing {
+public:
+    explicit Tracing(const Scene& scene)
+        : scene_(&scene), offset_(4e-6f * (scene.bounds().radius + length(scene.bounds().center))) {}
+
+    const Scene& scene() const { return *scene_; }
+    uint64_t rays() const { return rays_; }
+    void addRays(uint64_t rays) { rays_ += rays; }
+    /// How far from its surface a ray starts: positions and directions of vertices are as good as that.
+    float offsetLength() const { return offset_; }
+
+    /// The vertex that a ray from v along w meets; leaving the scene, the environment's vertex if there is one.
+    bool next(const Vertex& v, const Vec3f& w, Vertex& hit) { return nextFrom(offset(v, w), w, hit); }
+
+    bool nextFrom(const Vec3f& origin, const Vec3f& w, Vertex& out) {
+        ++rays_;
+        Hit hit;
+        if (scene_->rays().intersect(origin, w, hit)) {
+            out = scene_->vertexAt(origin, w, hit);
+            return true;
+        }
+        if (scene_->environment == kNone) return false;
+        out = Vertex{};
+        out.position = w;
+        out.kind = Vertex::Kind::Infinite;
+        out.shape = scene_->environment;
+        return true;
+    }
+
+    /// V(a↔b). Asked in the order light, camera, so that the answer is a function of the pair.
+    bool visible(const Vertex& a, const Vertex& b) {
+        ++rays_;
+        if (a.kind == Vertex::Kind::Infinite) return !scene_->rays().occludedToInfinity(offset(b, a.position), a.position);
+        const Vec3f d = b.position - a.position;
+        const Vec3f from = offset(a, d), to = offset(b, -d);
+        return !scene_->rays().occluded(from, to - from);
+    }
+
+private:
+    /// Leaves the surface along the geometric normal, by a few dozen units in the last place of the scene's coordinates.
+    Vec3f offset(const Vertex& v, const Vec3f& w) const {
+        if (!v.onSurface()) return v.position;
+        return v.position + v.normal * (dot(v.normal, w) > 0 ? offset_ : -offset_);
+    }
+
+    const Scene* scene_;
+    float offset_;
+    uint64_t rays_ = 0;
+};
+
+}  // namespace ulam

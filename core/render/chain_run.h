@@ -1,0 +1,66 @@
+#pragma once
+// A run of many Markov chains: seeding, the round over the chains, and the deposits on the film.
+
+#include "core/image/film.h"
+#include "core/mcmc/kernel.h"
+#include "core/render/sampler.h"
+
+#include <atomic>
+
+namespace ulam {
+
+/// What the samplers with chains have in common.
+struct ChainParameters {
+    int chains = 1000;
+    int bootstrap = 0;
+    std::string target = "luminance";
+    template <class V>
+    void describe(V& v) {
+        v("chains", chains, {.help = "Markov chains, whatever the number of threads", .min = 1, .max = 1e6});
+        v("bootstrap", bootstrap, {.help = "bidirectional samples that seed the chains and give the image's scale; 0: about a tenth of the work", .min = 0, .max = 1e9});
+        v("target", target, {.help = "what chains are distributed as: a scalar of the contribution (ulam list targets)"});
+    }
+};
+
+/// How steps turn into an image.
+enum class Deposit {
+    ExpectedValues,  ///< α to the proposal, 1 − α to the current state (Veach 1997, §11.3.3)
+    Kelemen,         ///< large steps also count as independent samples (Kelemen et al. 2002, §4)
+};
+
+using TargetMaker = std::function<std::unique_ptr<Target>()>;
+
+class ChainRun : public SamplerRun {
+public:
+    ChainRun(const RunContext& context, const ChainParameters& parameters, const PathLimits& limits, MutationMix mix, Deposit deposit,
+             const TargetMaker& makeTarget);
+    ~ChainRun() override;
+
+    void prepare() override;
+    /// Steps a chain takes before the next one's turn: long enough to keep its state in the cache.
+    uint64_t chunk() const override { return 64; }
+    void work(int worker, uint64_t begin, uint64_t end) override;
+    Image develop(uint64_t units) const override;
+    uint64_t rays() const override;
+    void report(uint64_t units, RenderStatistics& statistics) const override;
+
+private:
+    struct Worker;
+    struct ChainSlot;
+
+    void bootstrap();
+    void seedChains();
+
+    RunContext context_;
+    ChainParameters parameters_;
+    PathLimits limits_;
+    MutationMix mix_;
+    Deposit deposit_;
+    std::vector<std::unique_ptr<Worker>> workers_;
+    std::vector<std::unique_ptr<ChainSlot>> chains_;
+    std::vector<double> weights_;  ///< of the bootstrap samples; empty once the chains are seeded
+    uint64_t bootstrapSamples_ = 0, seedsLost_ = 0;
+    double normalization_ = 0, normalizationStandardError_ = 0;
+};
+
+}  // namespace ulam

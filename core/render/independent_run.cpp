@@ -1,0 +1,141 @@
+#include "core/render/independent_run.h"
+
+#include "core/render/technique_films.h"
+
+#include <numeric>
+
+namespace ulam {
+namespace {
+
+class BidirectionalSource : public SampleSource {
+public:
+    BidirectionalSource(const Scene& scene, const BidirectionalOptions& options) : scene_(scene), sampler_(scene, options) {}
+
+    void sample(const Vec2f& raster, Numbers& numbers, ContributionSink& sink) override {
+        sampler_.sample(raster, numbers, [&](const Contribution& c) {
+            uint32_t feature = kNone;
+            if (!scene_.features.empty()) {
+                sampler_.join(c.technique, path_);
+                feature = featureOf(scene_.features, path_);
+            }
+            sink.add(c, feature);
+        });
+    }
+    uint64_t rays() const override { return sampler_.tracing().rays(); }
+
+private:
+    const Scene& scene_;
+    BidirectionalSampler sampler_;
+    Path path_;
+};
+
+constexpr int kTile = 16;  // pixels a side: what a chunk of samples covers
+
+}  // namespace
+
+std::unique_ptr<SampleSource> makeBidirectionalSource(const Scene& scene, const BidirectionalOptions& options) {
+    return std::make_unique<BidirectionalSource>(scene, options);
+}
+
+PixelOrder::PixelOrder(int width, int height, const ReconstructionFilter& filter) : width_(width), filter_(filter) {
+    const int columns = (width + kTile - 1) / kTile, rows = (height + kTile - 1) / kTile, tiles = columns * rows;
+    // Near the golden section of their number, so that consecutive tiles are far apart.
+    int stride = std::max(1, int(0.6180339887 * tiles));
+    while (std::gcd(stride, tiles) != 1) ++stride;
+    order_.reserve(size_t(width) * size_t(height));
+    for (int i = 0, tile = 0; i < tiles; ++i, tile = (tile + stride) % tiles) {
+        const int x0 = tile % columns * kTile, y0 = tile / columns * kTile;
+        for (int y = y0; y < std::min(height, y0 + kTile); ++y)
+            for (int x = x0; x < std::min(width, x0 + kTile); ++x) order_.push_back(y * width + x);
+    }
+}
+
+Vec2f PixelOrder::raster(int pixel, const Block& u) const {
+    return {float(pixel % width_ + 0.5 + filter_.sample(u[0])), float(pixel / width_ + 0.5 + filter_.sample(u[1]))};
+}
+
+struct IndependentRun::Worker : ContributionSink {
+    Worker(const Scene& scene, std::unique_ptr<SampleSource> s, bool techniqueImages)
+        : source(std::move(s)),
+          film(scene.sensor->width(), scene.sensor->height(), scene.filter),
+          // A splat estimates the mean over the window, a pixel's sample its own pixel: one scale for both.
+          pixelShare(film.pixels() / scene.sensor->windowArea()),
+          featureEnergy(scene.features.names.size()) {
+        if (techniqueImages) techniques = std::make_unique<TechniqueFilms>(film.width(), film.height(), scene.filter);
+    }
+
+    void add(const Contribution& c, uint32_t feature) override {
+        if (c.technique.t == 1) film.splat(c.raster, c.value);
+        else sum += c.value;
+        if (techniques) techniques->add(c, pixel);
+        if (feature == kNone) return;
+        const double energy = luminance(c.value) * (c.technique.t == 1 ? 1 : pixelShare);
+        if (energy < FixedSum::kLargestTerm) featureEnergy[feature].add(energy);
+    }
+
+    std::unique_ptr<SampleSource> source;
+    PrimaryVector u;
+    Film film;
+    double pixelShare;
+    std::unique_ptr<TechniqueFilms> techniques;
+    std::vector<FixedSum> featureEnergy;
+    // Of the sample being made:
+    int pixel = 0;
+    Spectrum sum{0.0};
+};
+
+IndependentRun::IndependentRun(const RunContext& context, const SourceMaker& makeSource, bool techniqueImages)
+    : scene_(context.scene),
+      key_(context.key),
+      order_(context.scene.sensor->width(), context.scene.sensor->height(), context.scene.filter) {
+    for (int i = 0; i < context.workers; ++i) workers_.push_back(std::make_unique<Worker>(scene_, makeSource(), techniqueImages));
+}
+
+IndependentRun::~IndependentRun() = default;
+
+void IndependentRun::work(int worker, uint64_t begin, uint64_t end) {
+    Worker& w = *workers_[size_t(worker)];
+    for (uint64_t i = begin; i < end; ++i) {
+        Random random(key_, 0, i);
+        w.u.clear();
+        Numbers numbers(w.u, random);
+        w.pixel = order_.pixel(i);
+        w.sum = Spectrum(0.0);
+        w.source->sample(order_.raster(w.pixel, numbers(NumberStream::Camera, 0)), numbers, w);
+        w.film.countSample(w.pixel);
+        w.film.addSample(w.pixel, w.sum);
+    }
+}
+
+Image IndependentRun::develop(uint64_t units) const {
+    Film film = workers_[0]->film;
+    for (size_t i = 1; i < workers_.size(); ++i) film.merge(workers_[i]->film);
+    return film.develop(scene_.sensor->windowArea() / double(units));
+}
+
+uint64_t IndependentRun::rays() const {
+    uint64_t rays = 0;
+    for (const auto& w : workers_) rays += w->source->rays();
+    return rays;
+}
+
+void IndependentRun::report(uint64_t units, RenderStatistics& statistics) const {
+    statistics.samples = units;
+    statistics.rays = rays();
+    std::vector<FixedSum> energy(scene_.features.names.size());
+    for (const auto& w : workers_) {
+        if (w->film.nonFinite() > 0) statistics.nonFinite["contribution"] += w->film.nonFinite();
+        for (size_t i = 0; i < energy.size(); ++i) energy[i].add(w->featureEnergy[i]);
+    }
+    for (const FixedSum& e : energy) statistics.featureEnergy.push_back(e.value() / double(units));
+    if (!workers_[0]->techniques) return;
+    Film film = workers_[0]->film;
+    TechniqueFilms techniques = *workers_[0]->techniques;
+    for (size_t i = 1; i < workers_.size(); ++i) {
+        film.merge(workers_[i]->film);
+        techniques.merge(*workers_[i]->techniques);
+    }
+    techniques.develop(film, scene_.sensor->windowArea() / double(units), statistics.extraImages);
+}
+
+}  // namespace ulam

@@ -1,0 +1,54 @@
+#pragma once
+// The interface of every algorithm that turns a scene and a budget into an image. A sampler file describes one unit of
+// its work; the driver (driver.h) has the threads, budgets, snapshots and progress.
+
+#include "core/config/registry.h"
+#include "core/path/walk.h"
+#include "core/render/statistics.h"
+#include "core/scene/scene.h"
+
+#include <memory>
+
+namespace ulam {
+
+/// What a run is told.
+struct RunContext {
+    const Scene& scene;
+    RandomKey key;
+    int workers;             ///< threads; each has its own film and scratch space
+    double expectedUnits;    ///< samples or mutations the budget may allow, as far as known (0: unknown)
+    double expectedSeconds;  ///< time budget (0: none)
+};
+
+/// One run of a sampler. Work comes in units (samples, or mutations for chains), numbered from 0. The image depends on
+/// which units are done and not on who did them or when.
+class SamplerRun {
+public:
+    virtual ~SamplerRun() = default;
+
+    /// Before the first unit: seeding, normalisation. May use context.workers threads.
+    virtual void prepare() {}
+    /// Units handed out at a time, and the alignment of their ranges.
+    virtual uint64_t chunk() const = 0;
+    /// Does units [begin, end) of one chunk.
+    virtual void work(int worker, uint64_t begin, uint64_t end) = 0;
+    /// The image after `units` units.
+    virtual Image develop(uint64_t units) const = 0;
+    /// Rays traced so far by all workers; called between rounds of work.
+    virtual uint64_t rays() const = 0;
+    virtual void report(uint64_t units, RenderStatistics& statistics) const = 0;
+};
+
+class Sampler {
+public:
+    static const char* kind() { return "sampler"; }
+    virtual ~Sampler() = default;
+
+    /// Are its units mutations of Markov chains?
+    virtual bool isChainSampler() const { return false; }
+    virtual std::unique_ptr<SamplerRun> start(const RunContext& context) const = 0;
+};
+
+}  // namespace ulam
+
+#define ULAM_REGISTER_SAMPLER(Type, name, summary) ULAM_REGISTER(::ulam::Sampler, Type, name, summary)

@@ -1,0 +1,42 @@
+#pragma once
+// What a run reports beside its image: the numbers of result.json.
+
+#include "core/config/json.h"
+#include "core/image/image.h"
+#include "core/mcmc/statistics.h"
+#include "core/mcmc/trace.h"
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace ulam {
+
+struct RenderStatistics {
+    uint64_t rays = 0;
+    uint64_t samples = 0;    ///< independent samples, those of the bootstrap included
+    uint64_t mutations = 0;
+    uint64_t chains = 0;
+    double seedingSeconds = 0;
+    uint64_t seedingRays = 0;
+    double normalization = 0;               ///< b; 0 for samplers without chains
+    double normalizationStandardError = 0;
+    std::map<std::string, MutationStatistics> mutationStatistics;
+    std::map<std::string, uint64_t> nonFinite;  ///< refused contributions by cause
+    std::vector<std::string> biasLedger;        ///< every known source of bias of this run, in words
+    /// Energy (luminance) that passed each of the scene's features, and label changes of chains.
+    std::vector<double> featureEnergy;
+    uint64_t featureJumps = 0;
+    Json diagnostics = Json::object();          ///< further numbers of the sampler
+    std::vector<ChainTrace> traces;             ///< of the chains, in the order of their seeds
+    std::map<std::string, Image> extraImages;   ///< e.g. per-technique images, by name
+};
+
+struct Snapshot {
+    double fraction;  ///< of the budget
+    double seconds;
+    uint64_t rays, samples, mutations;
+    Image image;
+};
+
+}  // namespace ulam

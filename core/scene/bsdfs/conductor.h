@@ -1,0 +1,58 @@
+#pragma once
+// conductor: smooth metal on the side of the shading normal (Mitsuba 3 `conductor`).
+
+#include "core/scene/bsdfs/fresnel.h"
+#include "core/scene/bsdfs/scattering.h"
+
+namespace ulam {
+
+struct Conductor {
+    struct Parameters {
+        std::string material = "none";
+        Spectrum eta{0, 0, 0}, k{1, 1, 1}, specularReflectance{1, 1, 1};
+        template <class V>
+        void describe(V& v) {
+            v("material", material, {.help = "none: eta = 0, k = 1, a perfect mirror, unless eta and k are given", .choices = {"none"}});
+            v("eta", eta, {.help = "real part of the index of refraction", .min = 0, .max = 1e3});
+            v("k", k, {.help = "imaginary part of the index of refraction", .min = 0, .max = 1e3});
+            v("specular_reflectance", specularReflectance, {.help = "factor on the Fresnel reflectance", .min = 0, .max = 1});
+        }
+    };
+    explicit Conductor(const Parameters& p) : eta(p.eta), k(p.k), specularReflectance(p.specularReflectance) {}
+
+    static constexpr bool hasDelta = true, hasSmooth = false;
+
+    double albedo() const { return maxComponent(specularReflectance); }
+
+    template <class T>
+    Color<T> eval(const Direction<T>& toLight, const Direction<T>& toCamera, Lobe lobe) const {
+        if (lobe != Lobe::DeltaReflection || !(toLight.z > 0 && toCamera.z > 0)) return Color<T>(T(0));
+        return {specularReflectance.x * fresnelConductor(toLight.z, eta.x, k.x),
+                specularReflectance.y * fresnelConductor(toLight.z, eta.y, k.y),
+                specularReflectance.z * fresnelConductor(toLight.z, eta.z, k.z)};
+    }
+
+    template <class T>
+    T pdf(const Direction<T>& from, const Direction<T>& to, Lobe lobe) const {
+        return lobe == Lobe::DeltaReflection && from.z > 0 && to.z > 0 ? to.z : T(0);
+    }
+
+    template <class T>
+    T probability(const Direction<T>&, const Direction<T>&, Lobe) const {
+        return T(1);
+    }
+
+    std::optional<ScatterSample> sampleLobe(const Vec3f& from, Lobe lobe, const Block&) const {
+        if (lobe != Lobe::DeltaReflection || !(from.z > 0)) return std::nullopt;
+        return ScatterSample{reflected(from), Lobe::DeltaReflection};
+    }
+    std::optional<ScatterSample> sample(const Vec3f& from, const Block& u) const { return sampleLobe(from, Lobe::DeltaReflection, u); }
+
+    bool invert(const Vec3f& from, const Vec3f& to, Lobe lobe, Block&) const {
+        return lobe == Lobe::DeltaReflection && from.z > 0 && to.z > 0;
+    }
+
+    Spectrum eta, k, specularReflectance;
+};
+
+}  // namespace ulam

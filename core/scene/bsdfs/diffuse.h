@@ -1,0 +1,55 @@
+#pragma once
+// diffuse: Lambertian reflection on the side of the shading normal (Mitsuba 3 `diffuse`).
+
+#include "core/scene/bsdfs/scattering.h"
+
+namespace ulam {
+
+struct Diffuse {
+    struct Parameters {
+        Spectrum reflectance{0.5, 0.5, 0.5};
+        template <class V>
+        void describe(V& v) {
+            v("reflectance", reflectance, {.help = "fraction of the light that is reflected", .min = 0, .max = 1});
+        }
+    };
+    explicit Diffuse(const Parameters& p) : reflectance(p.reflectance) {}
+
+    static constexpr bool hasDelta = false, hasSmooth = true;
+
+    double albedo() const { return maxComponent(reflectance); }
+
+    template <class T>
+    Color<T> eval(const Direction<T>& toLight, const Direction<T>& toCamera, Lobe) const {
+        if (!(toLight.z > 0 && toCamera.z > 0)) return Color<T>(T(0));
+        return Color<T>(T(reflectance.x), T(reflectance.y), T(reflectance.z)) * T(1 / kPi);
+    }
+
+    template <class T>
+    T pdf(const Direction<T>& from, const Direction<T>& to, Lobe) const {
+        return from.z > 0 ? cosineHemispherePdf(to.z) : T(0);
+    }
+
+    template <class T>
+    T probability(const Direction<T>&, const Direction<T>&, Lobe) const {
+        return T(1);
+    }
+
+    std::optional<ScatterSample> sampleLobe(const Vec3f& from, Lobe lobe, const Block& u) const {
+        if (lobe != Lobe::Smooth || !(from.z > 0)) return std::nullopt;
+        return ScatterSample{squareToCosineHemisphere(u[0], u[1]), Lobe::Smooth};
+    }
+    std::optional<ScatterSample> sample(const Vec3f& from, const Block& u) const { return sampleLobe(from, Lobe::Smooth, u); }
+
+    bool invert(const Vec3f& from, const Vec3f& to, Lobe lobe, Block& u) const {
+        if (lobe != Lobe::Smooth || !(from.z > 0 && to.z > 0)) return false;
+        const Sample2 s = cosineHemisphereToSquare(to);
+        u[0] = s.u;
+        u[1] = s.v;
+        return true;
+    }
+
+    Spectrum reflectance;
+};
+
+}  // namespace ulam

@@ -1,0 +1,63 @@
+#pragma once
+// constant: the same radiance from every direction at infinity (Mitsuba 3 `constant`).
+
+#include "core/scene/emitters/emission.h"
+
+namespace ulam {
+
+struct ConstantEmitter {
+    struct Parameters {
+        Spectrum radiance{1, 1, 1};
+        template <class V>
+        void describe(V& v) {
+            v("radiance", radiance, {.help = "radiance from every direction", .unit = "W/(m² sr)", .min = 0});
+        }
+    };
+
+    Spectrum emitted;
+
+    static constexpr bool positionIsDelta = false;
+
+    /// What enters the bounding sphere.
+    double power(const EmissionContext& c) const {
+        return luminance(emitted) * 4 * kPi * kPi * c.bounds.radius * c.bounds.radius;
+    }
+
+    Vertex samplePosition(const EmissionContext& c, const Block& u) const {
+        Vertex v{};
+        v.position = squareToSphere(u[1], u[2]);
+        v.kind = Vertex::Kind::Infinite;
+        v.shape = c.index;
+        return v;
+    }
+    double positionPdf(const EmissionContext&, const Vertex&) const { return kSpherePdf; }
+    void invertPosition(const EmissionContext&, const Vertex& x0, Block& u) const {
+        const Sample2 s = sphereToSquare(x0.position);
+        u[1] = s.u;
+        u[2] = s.v;
+    }
+
+    EmittedRay sampleDirection(const EmissionContext& c, const Vertex& x0, const Block& u) const {
+        const Frame frame(x0.position);
+        const Vec2f d = squareToDisc(u[0], u[1]) * c.bounds.radius;
+        return {c.bounds.center + frame.s * d.x + frame.t * d.y + frame.n * c.bounds.radius, -x0.position, discPdf(c)};
+    }
+    double directionPdf(const EmissionContext& c, const Vertex&, const Vec3f&) const { return discPdf(c); }
+    void invertDirection(const EmissionContext& c, const Vertex& x0, const Vertex& x1, Block& u) const {
+        const Vec3f d = Frame(x0.position).toLocal(x1.position - c.bounds.center) / c.bounds.radius;
+        const Sample2 s = discToSquare(d.x, d.y);
+        u[0] = s.u;
+        u[1] = s.v;
+    }
+
+    Spectrum radiance(const EmissionContext&, const Vertex&, const Vec3f&) const { return emitted; }
+
+    Vertex sampleDirect(const EmissionContext& c, const Vertex&, const Block& u) const { return samplePosition(c, u); }
+    double directPdf(const EmissionContext&, const Vertex&, const Vertex&) const { return kSpherePdf; }
+    void invertDirect(const EmissionContext& c, const Vertex& x0, Block& u) const { invertPosition(c, x0, u); }
+
+private:
+    static double discPdf(const EmissionContext& c) { return 1 / (kPi * c.bounds.radius * c.bounds.radius); }
+};
+
+}  // namespace ulam

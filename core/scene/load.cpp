@@ -1,0 +1,210 @@
+#include "core/scene/load.h"
+
+#include <map>
+
+#include "core/base/sha256.h"
+#include "core/scene/loading/emitters.h"
+#include "core/scene/loading/materials.h"
+#include "core/scene/loading/plugin_table.h"
+#include "core/scene/loading/sensors.h"
+#include "core/scene/loading/shapes.h"
+
+namespace ulam {
+namespace {
+
+/// The plugins that may stand in a scene by themselves.
+std::vector<PluginInfo> sceneEntries() {
+    std::vector<PluginInfo> all;
+    for (const PluginKind kind : {PluginKind::Shapes, PluginKind::Bsdfs, PluginKind::Emitters, PluginKind::Sensors})
+        for (PluginInfo& plugin : scenePlugins(kind)) all.push_back(std::move(plugin));
+    return all;
+}
+
+class SceneBuilder {
+public:
+    SceneBuilder(const JsonNode& root, const std::filesystem::path& folder) : root_(root) { context_.folder = folder; }
+
+    Scene build(const JsonNode& film);
+    FilmSettings film(const JsonNode& replacement) { return readFilm(sensorNode(), replacement, context_); }
+
+private:
+    std::vector<JsonNode> entries() const;
+    JsonNode sensorNode() const;
+    JsonNode resolve(const JsonNode& node) const;
+    uint32_t material(const JsonNode& node);
+    uint32_t addMaterial(const Material& material);
+    void addShape(const JsonNode& node);
+    void addEmitter(const JsonNode& node);
+
+    JsonNode root_;
+    LoadContext context_;
+    Scene scene_;
+    std::map<std::string, uint32_t> materials_;  // by JSON pointer of the plugin
+};
+
+std::vector<JsonNode> SceneBuilder::entries() const {
+    std::vector<JsonNode> result;
+    for (const auto& [key, member] : root_.members()) {
+        if (key == "type" || key == "id" || key == "$schema") continue;
+        if (!isPlugin(member)) member.expected("an object with a \"type\"");
+        result.push_back(member);
+    }
+    return result;
+}
+
+JsonNode SceneBuilder::sensorNode() const {
+    std::optional<JsonNode> sensor;
+    for (const JsonNode& entry : entries()) {
+        if (!contains(scenePlugins(PluginKind::Sensors), pluginName(entry))) continue;
+        if (sensor) entry.fail("a scene has exactly one sensor", fmt::format("another stands at {}", sensor->where()));
+        sensor = entry;
+    }
+    if (!sensor) root_.fail("the scene has no sensor", "add one of type \"perspective\"");
+    return *sensor;
+}
+
+/// What a reference stands for: the scene's entry of that name.
+JsonNode SceneBuilder::resolve(const JsonNode& node) const {
+    if (pluginName(node) != "ref") return node;
+    node.allowOnly("key of a reference", {"type", "id"});
+    const JsonNode id = node.at("id");
+    std::vector<std::string> names;
+    for (const JsonNode& entry : entries()) {
+        const auto own = entry.find("id");
+        const std::string name = own ? own->string() : entry.key();
+        if (name == id.string()) {
+            if (!contains(scenePlugins(PluginKind::Bsdfs), pluginName(entry)))
+                id.fail(fmt::format("{} is no BSDF, but {}", inQuotes(name), inQuotes(pluginName(entry))),
+                        "only BSDFs can be referred to");
+            return entry;
+        }
+        names.push_back(name);
+    }
+    unknownName("entry of the scene", id.string(), names, id.where());
+}
+
+uint32_t SceneBuilder::addMaterial(const Material& material) {
+    scene_.materials.push_back(material);
+    return uint32_t(scene_.materials.size() - 1);
+}
+
+uint32_t SceneBuilder::material(const JsonNode& node) {
+    const JsonNode plugin = resolve(node);
+    const auto known = materials_.find(plugin.pointer());
+    if (known != materials_.end()) return known->second;
+    const Material material = readMaterial(plugin, [this](const JsonNode& nested) { return resolve(nested); });
+    return materials_[plugin.pointer()] = addMaterial(material);
+}
+
+void SceneBuilder::addShape(const JsonNode& node) {
+    const auto index = uint32_t(scene_.shapes.size());
+    Shape shape = readShape(node, context_);
+    shape.id = node.key();
+    std::optional<uint32_t> covering;
+    const auto plugins = shapePlugins();
+    const auto self =
+        std::find_if(plugins.begin(), plugins.end(), [&](const PluginInfo& p) { return p.name == pluginName(node); });
+    for (const JsonNode& nested : nestedPlugins(node, self->parameters)) {
+        const std::string& name = pluginName(nested);
+        if (contains(emitterPlugins(), name)) {
+            if (shape.emitter != kNone) nested.fail("a shape has at most one emitter");
+            shape.emitter = uint32_t(scene_.emitters.size());
+            scene_.emitters.push_back(readAreaEmitter(nested, index));
+        } else if (name == "ref" || contains(bsdfPlugins(), name)) {
+            if (covering) nested.fail("a shape has at most one BSDF");
+            covering = material(nested);
+        } else {
+            auto possible = bsdfPlugins();
+            for (PluginInfo& emitter : emitterPlugins()) possible.push_back(std::move(emitter));
+            unknownPlugin(nested, "bsdf or emitter", possible);
+        }
+    }
+    shape.material = covering ? *covering : addMaterial(defaultMaterial(shape.emitter != kNone));
+    scene_.shapes.push_back(std::move(shape));
+}
+
+void SceneBuilder::addEmitter(const JsonNode& node) {
+    const Emitter emitter = readEmitter(node);
+    const auto isConstant = [](const Emitter& e) { return std::holds_alternative<ConstantEmitter>(e); };
+    if (isConstant(emitter) && std::any_of(scene_.emitters.begin(), scene_.emitters.end(), isConstant))
+        node.fail("a scene has at most one constant emitter");
+    scene_.emitters.push_back(emitter);
+}
+
+Scene SceneBuilder::build(const JsonNode& film) {
+    for (const JsonNode& entry : entries()) {
+        const std::string& name = pluginName(entry);
+        if (noteIfUnused(entry, context_)) continue;
+        if (contains(shapePlugins(), name))
+            addShape(entry);
+        else if (contains(bsdfPlugins(), name))
+            material(entry);
+        else if (contains(emitterPlugins(), name))
+            addEmitter(entry);
+        else if (!contains(sensorPlugins(), name))
+            unknownPlugin(entry, "scene plugin", sceneEntries());
+    }
+    const JsonNode sensor = sensorNode();
+    const FilmSettings settings = readFilm(sensor, film, context_);
+    scene_.sensor = readSensor(sensor, settings, context_);
+    scene_.filter = settings.filter;
+    if (scene_.emitters.empty()) root_.fail("the scene has no light", "add an emitter");
+
+    std::string content = root_.json().dump();
+    if (!film.isNull()) content += film.json().dump();
+    for (const std::string& file : context_.fileHashes) content += file;
+    scene_.hash = sha256(content);
+    scene_.warnings = std::move(context_.warnings);
+    scene_.finalize();
+    return std::move(scene_);
+}
+
+}  // namespace
+
+struct SceneDescription::Content {
+    JsonNode dictionary;
+    std::filesystem::path folder;
+    std::unique_ptr<Generator> generator;
+};
+
+SceneDescription SceneDescription::fromFile(const std::filesystem::path& file) {
+    return fromNode(JsonDocument::fromFile(file).root(), file.parent_path());
+}
+
+SceneDescription SceneDescription::fromNode(const JsonNode& node, const std::filesystem::path& folder) {
+    if (node.isString()) return fromFile(folder / node.string());
+    SceneDescription description;
+    if (pluginName(node) == "scene") {
+        description.content_ = std::make_shared<Content>(Content{node, folder, nullptr});
+        return description;
+    }
+    auto possible = scenePlugins(PluginKind::Generators);
+    if (!contains(possible, pluginName(node))) {
+        possible.insert(possible.begin(), {"scene", "", {}});
+        unknownPlugin(node, "scene or generator", possible);
+    }
+    auto generator = Registry<Generator>::instance().create(node);
+    JsonNode expanded(generator->expand());
+    description.content_ = std::make_shared<Content>(Content{std::move(expanded), folder, std::move(generator)});
+    return description;
+}
+
+const Json& SceneDescription::dictionary() const {
+    return content_->dictionary.json();
+}
+
+const Generator* SceneDescription::generator() const {
+    return content_->generator.get();
+}
+
+Scene SceneDescription::build(const Json& film) const {
+    Scene scene = SceneBuilder(content_->dictionary, content_->folder).build(JsonNode(film));
+    if (content_->generator) scene.features = content_->generator->features();
+    return scene;
+}
+
+FilmSize SceneDescription::filmSize(const Json& film) const {
+    return SceneBuilder(content_->dictionary, content_->folder).film(JsonNode(film)).size;
+}
+
+}  // namespace ulam

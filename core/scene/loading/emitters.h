@@ -1,0 +1,16 @@
+#pragma once
+// Emitter plugins.
+
+#include "core/scene/emitter.h"
+#include "core/scene/plugins.h"
+
+namespace ulam {
+
+std::vector<PluginInfo> emitterPlugins();
+
+/// The light of the shape with this index, from the emitter nested in it.
+Emitter readAreaEmitter(const JsonNode& node, uint32_t shape);
+/// An emitter of its own.
+Emitter readEmitter(const JsonNode& node);
+
+}  // namespace ulam

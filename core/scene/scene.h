@@ -1,0 +1,53 @@
+#pragma once
+// A scene ready to be rendered: shapes, materials, emitters, sensor and ray tracing, in flat arrays that vertices index.
+
+#include "core/scene/bsdf.h"
+#include "core/scene/emitter.h"
+#include "core/scene/features.h"
+#include "core/image/filter.h"
+#include "core/scene/ray_tracer.h"
+#include "core/scene/sensors/perspective.h"
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace ulam {
+
+class Scene {
+public:
+    std::vector<Shape> shapes;
+    std::vector<Material> materials;
+    std::vector<Emitter> emitters;
+    uint32_t environment = kNone;  ///< index of the emitter at infinity
+    std::optional<Perspective> sensor;
+    ReconstructionFilter filter;
+    Features features;
+    std::vector<std::string> warnings;  ///< e.g. counted degenerate triangles
+    std::string hash;                   ///< SHA-256 of everything that determines images of this scene
+
+    /// Call once after the arrays are filled: areas, bounds, light selection, acceleration structure.
+    void finalize();
+
+    EmissionContext emission(uint32_t emitter) const { return {shapes, bounds_, emitter}; }
+    const BoundingSphere& bounds() const { return bounds_; }
+    /// Emitters are chosen by power, for emission and for next-event estimation alike.
+    const DiscreteDistribution& emitterChoice() const { return emitterChoice_; }
+    const RayTracer& rays() const { return rays_; }
+
+    /// The emitter that shines at a vertex, or kNone.
+    uint32_t emitterAt(const Vertex& v) const {
+        return v.onSurface() ? shapes[v.shape].emitter : v.shape;
+    }
+    const Material& materialAt(const Vertex& v) const { return materials[shapes[v.shape].material]; }
+
+    /// The vertex at a hit of a ray.
+    Vertex vertexAt(const Vec3f& origin, const Vec3f& direction, const Hit& hit) const;
+
+private:
+    BoundingSphere bounds_;
+    DiscreteDistribution emitterChoice_;
+    RayTracer rays_;
+};
+
+}  // namespace ulam

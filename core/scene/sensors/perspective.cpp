@@ -1,0 +1,71 @@
+#include "core/scene/sensors/perspective.h"
+
+#include "core/base/error.h"
+
+namespace ulam {
+namespace {
+
+/// tan of half the horizontal field of view.
+double tangentX(const Perspective::Parameters& p, double width, double height) {
+    const double t = std::tan(p.fov * kPi / 360);
+    const double aspect = width / height;
+    if (p.fovAxis == "x") return t;
+    if (p.fovAxis == "y") return t * aspect;
+    if (p.fovAxis == "diagonal") return t * aspect / std::sqrt(1 + aspect * aspect);
+    const bool wide = width > height;
+    return (p.fovAxis == "larger") == wide || width == height ? t : t * aspect;
+}
+
+Vec3f axis(const Matrix4& m, const Imath::V3d& direction) {
+    Imath::V3d out;
+    m.multDirMatrix(direction, out);
+    return Vec3f(out.normalized());
+}
+
+}  // namespace
+
+Perspective::Perspective(const Parameters& p, const Matrix4& toWorld, const FilmSize& film, float margin)
+    : film_(film),
+      window_({-margin, -margin}, {film.cropWidth + margin, film.cropHeight + margin}),
+      unitX_(axis(toWorld, {1, 0, 0})),
+      unitY_(axis(toWorld, {0, 1, 0})),
+      unitZ_(axis(toWorld, {0, 0, 1})) {
+    Imath::V3d origin;
+    toWorld.multVecMatrix(Imath::V3d(0, 0, 0), origin);
+    position_ = Vec3f(origin);
+    const double t = tangentX(p, film.width, film.height);
+    dx_ = -2 * t / film.width;
+    dy_ = -2 * t / film.width;  // square pixels
+    x0_ = t + dx_ * (film.cropOffsetX + p.principalPointOffsetX * film.width);
+    y0_ = t * film.height / film.width + dy_ * (film.cropOffsetY + p.principalPointOffsetY * film.height);
+    windowArea_ = double(window_.max.x - window_.min.x) * (window_.max.y - window_.min.y);
+    importanceOnAxis_ = 1 / (windowArea_ * dx_ * dy_);
+}
+
+Vertex Perspective::samplePosition(const Block&) const {
+    Vertex v{};
+    v.position = position_;
+    v.kind = Vertex::Kind::Point;
+    v.shape = kNone;
+    return v;
+}
+
+Vec3f Perspective::direction(const Vec2f& raster) const {
+    const float x = float(x0_ + dx_ * raster.x), y = float(y0_ + dy_ * raster.y);
+    return normalize(unitX_ * x + unitY_ * y + unitZ_);
+}
+
+std::optional<Vec2f> Perspective::raster(const Vec3f& w) const {
+    const double z = dot(w, unitZ_);
+    if (z <= 0) return std::nullopt;
+    const Vec2f r{float((dot(w, unitX_) / z - x0_) / dx_), float((dot(w, unitY_) / z - y0_) / dy_)};
+    if (r.x < window_.min.x || r.x >= window_.max.x || r.y < window_.min.y || r.y >= window_.max.y) return std::nullopt;
+    return r;
+}
+
+double Perspective::importance(const Vec3f& w) const {
+    const double z = dot(w, unitZ_);
+    return raster(w) ? importanceOnAxis_ / (z * z * z) : 0;
+}
+
+}  // namespace ulam

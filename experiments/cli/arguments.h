@@ -1,0 +1,37 @@
+#pragma once
+// Arguments that several commands share.
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/scene/load.h"
+
+namespace ulam {
+
+/// A document named on the command line and the folder that relative paths inside it start from.
+struct ArgumentDocument {
+    JsonDocument document;
+    std::filesystem::path folder;
+};
+
+/// SCENE: a JSON file, a generator's name, or JSON itself.
+ArgumentDocument sceneArgument(const std::string& argument);
+/// A sampler's name, a JSON file with its parameters, or JSON itself.
+ArgumentDocument samplerArgument(const std::string& argument);
+
+/// `--plugin FILE`, repeatable: shared libraries that register mutations, samplers or generators. The file is opened
+/// while the command line is parsed, before the command runs; one that cannot be opened fails with the reason.
+void addPluginOption(CLI::App& command);
+
+/// `--threads N`, by default the number of cores.
+std::shared_ptr<int> addThreadsOption(CLI::App& command);
+
+/// Refuses what is not a finite number above 0.
+CLI::Validator positiveNumber();
+
+/// Fails with CannotWrite unless a file of this name can be made: better before hours of work than after.
+void checkWritable(const std::string& file);
+
+}  // namespace ulam

@@ -1,0 +1,147 @@
+// ulam bench: how fast the samplers are, as fractions of what Embree alone gives on the same scene.
+
+#include <chrono>
+
+#include "core/render/driver.h"
+#include "core/scene/load.h"
+#include "experiments/cli/commands.h"
+
+namespace ulam {
+namespace {
+
+// One glass sphere in the Cornell box; paths of up to 8 edges and no Russian roulette, so that nothing is gained by
+// ending paths early.
+constexpr const char* kScene = R"({"type": "cornell_box", "variant": "glass_sphere"})";
+constexpr const char* kFilm = R"({"width": 512, "height": 512, "rfilter": {"type": "box"}})";
+constexpr const char* kLimits = R"("max_depth": 8, "rr_depth": 1000000)";
+
+struct Case {
+    const char* name;
+    const char* parameters;
+};
+constexpr Case kCases[] = {
+    {"path", R"("type": "path")"},
+    {"bdpt", R"("type": "bdpt")"},
+    {"pssmlt over path", R"("type": "pssmlt", "base": "path")"},
+    {"pssmlt over bdpt", R"("type": "pssmlt", "base": "bdpt")"},
+    {"mlt (Veach's mix)",
+     R"("type": "mlt", "mutations": {"bidirectional": {"weight": 0.5}, "lens": {}, "caustic": {}, "multi_chain": {}})"},
+};
+
+double now() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// Rays a second of one thread, each starting where the last one ended and bouncing as off a diffuse surface: best of
+/// five.
+double ceiling(const Scene& scene) {
+    std::vector<std::vector<Vec3f>> normals(scene.shapes.size());
+    for (size_t i = 0; i < scene.shapes.size(); ++i)
+        if (const Mesh* mesh = std::get_if<Mesh>(&scene.shapes[i].geometry))
+            for (const auto& t : mesh->triangles)
+                normals[i].push_back(normalize(cross(mesh->positions[t[1]] - mesh->positions[t[0]],
+                                                     mesh->positions[t[2]] - mesh->positions[t[0]])));
+    const Vec3f start = scene.sensor->samplePosition({}).position, ahead = scene.sensor->direction({256, 256});
+    const float offset = 1e-4f * scene.bounds().radius;
+    uint64_t state = 88172645463325252ull;
+    const auto uniform = [&state] {
+        state ^= state << 13, state ^= state >> 7, state ^= state << 17;
+        return float(state >> 40) * 0x1p-24f;
+    };
+    double best = 0;
+    for (int repeat = 0; repeat < 5; ++repeat) {
+        constexpr int kRays = 1'000'000;
+        Vec3f o = start, w = ahead;
+        const double begin = now();
+        for (int i = 0; i < kRays; ++i) {
+            Hit hit;
+            if (!scene.rays().intersect(o, w, hit)) {
+                o = start, w = ahead;
+                continue;
+            }
+            const Vec3f p = o + w * hit.distance;
+            const Sphere* sphere = std::get_if<Sphere>(&scene.shapes[hit.shape].geometry);
+            Vec3f n = sphere ? (p - sphere->center) / sphere->radius : normals[hit.shape][hit.primitive];
+            if (dot(n, w) > 0) n = -n;
+            const float z = 1 - 2 * uniform(), phi = 2 * float(kPi) * uniform(),
+                        r = std::sqrt(std::max(0.0f, 1 - z * z));
+            const Vec3f u = n + Vec3f(r * std::cos(phi), r * std::sin(phi), z);
+            o = p + n * offset;
+            w = u / std::sqrt(std::max(1e-12f, length2(u)));
+        }
+        best = std::max(best, kRays / (now() - begin));
+    }
+    return best;
+}
+
+struct Rates {
+    double rays, units, raysPerUnit;
+};
+
+Rates measure(const Scene& scene, const Case& c, int threads, double seconds) {
+    const auto document = JsonDocument::fromText(fmt::format("{{{}, {}}}", c.parameters, kLimits), c.name);
+    const auto sampler = Registry<Sampler>::instance().create(document.root());
+    RenderOptions options;
+    options.budget.seconds = seconds;
+    options.threads = threads;
+    options.key = makeKey(1);
+    const RenderResult r = render(scene, *sampler, options);
+    const double units = double(sampler->isChainSampler() ? r.statistics.mutations : r.statistics.samples);
+    const double working = r.wallSeconds - r.statistics.seedingSeconds,
+                 rays = double(r.statistics.rays) - double(r.statistics.seedingRays);
+    return {rays / working, units / working, rays / units};
+}
+
+void bench(double seconds, bool json) {
+    const auto description = SceneDescription::fromNode(JsonDocument::fromText(kScene, "bench").root(), ".");
+    const Scene scene = description.build(Json::parse(kFilm));
+    Json out = {{"cases", Json::array()}};
+    if (!json)
+        fmt::print("{:<20} {:>7} {:>11} {:>11} {:>10} {:>14} {:>14} {:>9}\n", "sampler", "threads", "rays/s", "units/s",
+                   "rays/unit", "rays/ceiling", "units/ceiling", "speed-up");
+    for (const Case& c : kCases) {
+        // In the same minute as what it is the measure of: machines are noisy.
+        const double top = ceiling(scene);
+        double single = 0;
+        for (int threads = 1; threads <= 2; ++threads) {
+            const Rates r = measure(scene, c, threads, seconds);
+            if (threads == 1) single = r.units;
+            out["cases"].push_back({{"sampler", c.name},
+                                    {"threads", threads},
+                                    {"embree_ceiling_rays_per_second", top},
+                                    {"rays_per_second", r.rays},
+                                    {"units_per_second", r.units},
+                                    {"rays_per_unit", r.raysPerUnit},
+                                    {"rays_per_ceiling_ray", r.rays / top / threads},
+                                    {"units_per_ceiling_ray", r.units / top / threads},
+                                    {"speedup", r.units / single}});
+            if (!json)
+                fmt::print("{:<20} {:>7} {:>11.3e} {:>11.3e} {:>10.2f} {:>14.3f} {:>14.4f} {:>9.2f}\n", c.name, threads,
+                           r.rays, r.units, r.raysPerUnit, r.rays / top / threads, r.units / top / threads,
+                           r.units / single);
+            std::fflush(stdout);
+        }
+    }
+    if (json)
+        fmt::print("{}\n", dump(out));
+    else
+        fmt::print(
+            "units: samples (path, bdpt) or mutations; fractions are per thread, of one thread's dependent Embree rays "
+            "on this scene\n");
+}
+
+}  // namespace
+
+void addBenchCommand(CLI::App& app) {
+    auto* command =
+        app.add_subcommand("bench", "Measure rays, samples and mutations a second against Embree's own speed");
+    auto seconds = std::make_shared<double>(3);
+    auto json = std::make_shared<bool>(false);
+    command->add_option("--seconds", *seconds, "of each measurement")
+        ->capture_default_str()
+        ->check(CLI::Range(0.1, 600.0));
+    command->add_flag("--json", *json, "JSON on the standard output");
+    command->callback([seconds, json] { bench(*seconds, *json); });
+}
+
+}  // namespace ulam

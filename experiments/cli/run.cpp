@@ -1,0 +1,150 @@
+// ulam run: plan, run, analyse, report.
+
+#include <cstdlib>
+#include <numeric>
+
+#include "core/base/error.h"
+#include "core/config/suggest.h"
+#include "experiments/cli/arguments.h"
+#include "experiments/cli/commands.h"
+#include "experiments/engine/signals.h"
+#include "experiments/engine/summary.h"
+#include "experiments/report/report.h"
+#include "experiments/statistics/comparison.h"
+
+namespace ulam {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct RunArguments {
+    std::string experiment, folder;
+    std::vector<std::string> assignments;
+    std::shared_ptr<int> threads;
+    bool resume = false, dryRun = false, keepGoing = false, quiet = false, json = false;
+};
+
+/// $ULAM_RUNS/NAME-N or runs/NAME-N: the first N that is free, or the last one that is there.
+fs::path defaultFolder(const std::string& name, bool last) {
+    const char* parent = std::getenv("ULAM_RUNS");
+    const auto folder = [&](int n) {
+        return fs::path(parent && *parent ? parent : "runs") / fmt::format("{}-{}", name, n);
+    };
+    int n = 1;
+    while (fs::exists(folder(n))) ++n;
+    return folder(last && n > 1 ? n - 1 : n);
+}
+
+/// Where the verdict cannot come out significant, whatever the errors.
+std::vector<std::string> replicateWarnings(const Plan& plan) {
+    const std::vector<double> p = plan.smallestAdjustedP();
+    if (p.empty() || *std::ranges::max_element(p) <= statistics::kFamilyLevel) return {};
+    return {fmt::format(
+        "too few replicates for a verdict, whatever the errors: of {} comparisons the smallest adjusted p that "
+        "can come out is {:.2g}, above {}; raise \"replicates\"",
+        p.size(), *std::ranges::max_element(p), statistics::kFamilyLevel)};
+}
+
+void printDryRun(const Plan& plan, const RunArguments& a) {
+    std::vector<std::string> warnings = replicateWarnings(plan);
+    Json resolved = plan.resolved();
+    double total = 0;
+    const auto estimate = [&](const Task& task) {
+        const double seconds = estimateSeconds(task, *a.threads) * task.replicates;
+        total += seconds;
+        return seconds;
+    };
+    for (std::size_t i = 0; i < plan.cells.size(); ++i)
+        resolved["cells"][i]["estimated_seconds"] = estimate(plan.cells[i].task);
+    for (const PlannedReference& reference : plan.references)
+        if (reference.spec.kind == ReferenceSpec::Kind::Sampler)
+            resolved["references"][reference.key]["estimated_seconds"] =
+                fs::exists(referenceCache() / reference.key) ? 0 : estimate(reference.task);
+    resolved["estimated_seconds"] = total;
+    resolved["warnings"] = warnings;
+    if (a.json) {
+        fmt::print("{}\n", dump(resolved));
+        return;
+    }
+    for (const auto& [key, reference] : resolved["references"].items())
+        fmt::print("reference {}{}\n", key,
+                   reference.contains("estimated_seconds") ? "  " + durationText(reference["estimated_seconds"]) : "");
+    for (const Json& cell : resolved["cells"])
+        fmt::print("cell {}  {} replicates of {}, random keys from {}, {}\n", cell["cell"].get<std::string>(),
+                   cell["replicates"].dump(), cell["budget"].dump(), cell["random_keys"][0].dump(),
+                   durationText(cell["estimated_seconds"]));
+    fmt::print("{} cells, {} comparisons, about {}\n", plan.cells.size(), plan.comparisons.size(), durationText(total));
+    for (const std::string& warning : warnings) fmt::print(stderr, "warning: {}\n", warning);
+}
+
+void printResults(const Json& summary, const fs::path& runDir, const RunArguments& a) {
+    if (a.json) {
+        fmt::print("{}\n", dump(summary));
+        return;
+    }
+    for (const Json& warning : summary["warnings"]) fmt::print(stderr, "warning: {}\n", warning.get<std::string>());
+    for (const Json& verdict : summary["verdicts"]) fmt::print("{}\n", verdict.get<std::string>());
+    fmt::print("{}\n", fs::absolute(runDir / "report.html").lexically_normal().string());
+}
+
+void runExperiment(const RunArguments& a) {
+    JsonDocument document = JsonDocument::fromFile(a.experiment);
+    document.applyOverrides(a.assignments);
+    const Plan plan = makePlan(document, a.experiment);
+    if (a.dryRun) return printDryRun(plan, a);
+
+    RunOptions options;
+    options.runDir = a.folder.empty() ? defaultFolder(plan.name, a.resume) : fs::path(a.folder);
+    options.threads = *a.threads;
+    options.keepGoing = a.keepGoing;
+    if (!a.resume && fs::exists(options.runDir / "resolved.json"))
+        fail(ExitCode::Usage, "{} holds a run already: give --resume to go on with it, or another -o",
+             options.runDir.string());
+
+    Progress progress(a.quiet);
+    std::vector<std::string> warnings = replicateWarnings(plan);
+    for (const auto& reference : plan.references)
+        for (const std::string& warning : reference.scene->scene.warnings)
+            warnings.push_back(reference.scene->name + ": " + warning);
+    for (const std::string& warning : warnings) progress.message("warning: " + warning);
+
+    const RunOutcome outcome = runPlan(plan, options, watchSignals(), progress);
+    if (outcome.interrupted) failIfSignalled("finished replicates are kept: go on with --resume");
+    if (outcome.reused > 0)
+        progress.message(fmt::format("{} replicates were there already, {} are new", outcome.reused, outcome.rendered));
+    const Json summary = summarize(plan, options.runDir, outcome.failures);
+    writeSummary(options.runDir, summary);
+    writeReport(options.runDir);
+    printResults(summary, options.runDir, a);
+    if (!outcome.failures.empty())
+        fail(ExitCode::SomeCellsFailed, "{} of {} replicates failed; --resume tries them again",
+             outcome.failures.size(), plan.order().size());
+}
+
+}  // namespace
+
+void addRunCommand(CLI::App& app) {
+    auto a = std::make_shared<RunArguments>();
+    CLI::App& command = *app.add_subcommand("run", "run an experiment: references, all replicates, statistics, report");
+    command.add_option("experiment", a->experiment, "JSON file (see: ulam schema experiment)")
+        ->type_name("EXPERIMENT.json")
+        ->required();
+    command
+        .add_option("-o,--output", a->folder,
+                    "folder of the run; without it NAME-1, NAME-2, ... in $ULAM_RUNS or in runs/")
+        ->type_name("DIR");
+    command.add_flag("--resume", a->resume, "go on with a run: what is finished is not done again");
+    command.add_flag("--dry-run", a->dryRun, "print cells, seeds, work and estimated time, and stop");
+    command.add_option("--set", a->assignments, "change the experiment, e.g. budget.time=1 (repeatable)")
+        ->type_name("PATH=VALUE")
+        ->take_all()
+        ->allow_extra_args(false);
+    a->threads = addThreadsOption(command);
+    command.add_flag("--keep-going", a->keepGoing, "a replicate that fails is reported, the others go on");
+    command.add_flag("--quiet", a->quiet, "no progress");
+    command.add_flag("--json", a->json, "print summary.json (with --dry-run: the plan)");
+    addPluginOption(command);
+    command.callback([a] { runExperiment(*a); });
+}
+
+}  // namespace ulam

@@ -1,0 +1,309 @@
+// A cell: its replicates against their reference.
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "core/image/image_io.h"
+#include "core/image/metrics.h"
+#include "experiments/engine/replicate.h"
+#include "experiments/engine/summary.h"
+#include "experiments/statistics/comparison.h"
+#include "experiments/statistics/convergence.h"
+#include "experiments/statistics/decomposition.h"
+#include "experiments/statistics/features.h"
+#include "experiments/statistics/moments.h"
+
+namespace ulam {
+namespace {
+
+namespace fs = std::filesystem;
+using statistics::Interval;
+
+/// null for what is not finite: an infinite psnr, a variation of nothing.
+Json number(double x) {
+    return std::isfinite(x) ? Json(x) : Json();
+}
+template <class I>
+Json interval(const std::optional<I>& i) {
+    return i ? Json{number(i->low), number(i->high)} : Json();
+}
+std::optional<Interval> meanInterval(const std::vector<double>& values) {
+    const auto all = std::ranges::all_of(values, [](double x) { return std::isfinite(x); });
+    const auto found = all ? statistics::meanInterval(values) : std::nullopt;
+    return found ? std::optional(found->ci95) : std::nullopt;
+}
+
+std::span<const float> channels(const Image& image) {
+    return {reinterpret_cast<const float*>(image.pixels.data()), image.pixels.size() * 3};
+}
+
+struct Replicate {
+    int number;
+    Json result;
+    Image image;
+};
+
+class CellAnalysis {
+public:
+    CellAnalysis(const Plan& plan, const Cell& cell, const Reference& reference, const fs::path& runDir)
+        : plan_(plan),
+          cell_(cell),
+          reference_(reference),
+          folder_(cellFolder(runDir, cell)),
+          primary_(findMetric(plan.metrics.front())) {
+        for (int r = 0; r < cell.task.replicates; ++r) {
+            Json result = finishedReplicate(cell.task, r, folder_);
+            if (result.is_null()) continue;
+            replicates_.push_back({r, std::move(result), readImage(replicateFolder(folder_, r) / "image.exr")});
+        }
+    }
+
+    CellSummary summarize() {
+        const PlannedReference& reference = plan_.references[cell_.reference];
+        Json& json = summary_.json;
+        json = {{"cell", cell_.task.name}, {"scene", cell_.task.scene->name},     {"sampler", cell_.task.sampler},
+                {"sweep", cell_.sweep},    {"parameters", cell_.task.parameters}, {"replicates", replicates_.size()}};
+        if (replicates_.empty()) return summary_;
+        addMetrics();
+        addDecomposition();
+        for (const char* field : {"rays", "mutations", "samples", "setup_seconds", "seeding_seconds", "cpu_seconds"})
+            json[field] = mean(field);
+        json["seconds"] = mean("wall_seconds");
+        json["normalization_cv"] = mean("normalization") > 0 && replicates_.size() > 1
+                                       ? number(statistics::coefficientOfVariation(values("normalization")))
+                                       : Json(0);
+        addConvergence();
+        addMutations();
+        addFeatures();
+        json["reference"] = reference.key;
+        json["reference_image"] = "references/" + reference.key + "/image.exr";
+        judgeReference();
+        addWarnings();
+        json["warnings"] = warnings_;
+        return summary_;
+    }
+
+private:
+    std::vector<double> values(const char* field) const {
+        std::vector<double> v;
+        for (const Replicate& r : replicates_) v.push_back(r.result.at(field).get<double>());
+        return v;
+    }
+    double mean(const char* field) const { return statistics::mean(values(field)); }
+
+    void addMetrics() {
+        Json all = Json::object();
+        for (const std::string& name : plan_.metrics) {
+            const Metric& metric = findMetric(name);
+            std::vector<double> full, trimmed;
+            for (const Replicate& r : replicates_) {
+                const Metric::Map map = metric.errorMap(r.image, reference_.image, &reference_.variance);
+                full.push_back(metric.value(map));
+                trimmed.push_back(metric.trimmedValue(map));
+            }
+            const double worst = metric.higherIsBetter ? std::ranges::min(full) : std::ranges::max(full);
+            Json perReplicate = Json::array();
+            for (const double x : full) perReplicate.push_back(number(x));
+            all[name] = {{"mean", number(statistics::mean(full))},
+                         {"ci95", interval(meanInterval(full))},
+                         {"trimmed_mean", number(statistics::mean(trimmed))},
+                         {"worst_replicate", number(worst)},
+                         {"values", perReplicate}};
+            if (name == primary_.name) summary_.errors = full;
+        }
+        summary_.json["metrics"] = std::move(all);
+
+        // What debiasing subtracted is the same for every image: the reference is compared with itself.
+        summary_.referenceVariance = primary_.evaluate(reference_.image, reference_.image) -
+                                     primary_.evaluate(reference_.image, reference_.image, &reference_.variance);
+
+        std::vector<std::size_t> byError(replicates_.size());
+        std::iota(byError.begin(), byError.end(), std::size_t{0});
+        std::ranges::stable_sort(byError, {}, [&](std::size_t i) { return summary_.errors[i]; });
+        summary_.json["worst_replicate"] = replicates_[byError.back()].number;
+        summary_.json["median_replicate"] = replicates_[byError[byError.size() / 2]].number;
+    }
+
+    void addDecomposition() {
+        summary_.json["variance"] = summary_.json["bias_squared"] = nullptr;
+        if (replicates_.size() < 2) return;
+        std::vector<std::span<const float>> images;
+        for (const Replicate& r : replicates_) images.push_back(channels(r.image));
+        const auto parts = statistics::decompose(images, channels(reference_.image), channels(reference_.variance));
+        summary_.json["variance"] = parts.variance;
+        summary_.json["bias_squared"] = parts.biasSquared;
+    }
+
+    /// Snapshots that fall into the seeding of the chains show nothing yet.
+    bool allHaveWork(std::size_t snapshot) const {
+        return std::ranges::all_of(replicates_, [&](const Replicate& r) {
+            const char* work = hasChains() ? "mutations" : "samples";
+            return r.result.at("snapshots").at(snapshot).at(work).get<double>() > 0;
+        });
+    }
+    bool hasChains() const { return mean("chains") > 0; }
+
+    void addConvergence() {
+        Json points = Json::array();
+        std::vector<statistics::Curve> curves(replicates_.size());
+        const Json& shots = replicates_.front().result.at("snapshots");
+        for (std::size_t i = 0; i < shots.size(); ++i) {
+            if (!allHaveWork(i)) continue;
+            std::map<std::string, double> costs;
+            std::vector<double> errors;
+            for (std::size_t r = 0; r < replicates_.size(); ++r) {
+                const Json& shot = replicates_[r].result.at("snapshots").at(i);
+                for (const char* cost : {"seconds", "rays", "mutations", "samples"})
+                    costs[cost] += shot.at(cost).get<double>() / double(replicates_.size());
+                const Image image =
+                    readImage(replicateFolder(folder_, replicates_[r].number) / shot.at("image").get<std::string>());
+                errors.push_back(primary_.evaluate(image, reference_.image, &reference_.variance));
+                curves[r].push_back({shot.at("seconds"), errors.back()});
+            }
+            points.push_back(point(shots[i].at("fraction"), costs, errors));
+        }
+        std::map<std::string, double> costs = {{"seconds", mean("wall_seconds")},
+                                               {"rays", mean("rays")},
+                                               {"mutations", mean("mutations")},
+                                               {"samples", mean("samples")}};
+        points.push_back(point(1, costs, summary_.errors));
+        for (std::size_t r = 0; r < replicates_.size(); ++r)
+            curves[r].push_back({replicates_[r].result.at("wall_seconds"), summary_.errors[r]});
+        summary_.json["convergence"] = std::move(points);
+
+        // -1 is the slope of a squared error.
+        const auto slope = statistics::fitSlope(curves);
+        flatter_ = slope && slope->flatter && primary_.debiased;
+        summary_.json["slope"] =
+            slope ? Json{{"value", slope->slope}, {"ci95", interval(slope->ci95)}, {"flatter_than_minus_one", flatter_}}
+                  : Json();
+        summary_.curves = std::move(curves);
+    }
+
+    static Json point(double fraction, std::map<std::string, double>& costs, const std::vector<double>& errors) {
+        return {{"fraction", fraction},
+                {"seconds", costs["seconds"]},
+                {"rays", costs["rays"]},
+                {"mutations", costs["mutations"]},
+                {"samples", costs["samples"]},
+                {"error", number(statistics::mean(errors))},
+                {"ci95", interval(meanInterval(errors))}};
+    }
+
+    void addMutations() {
+        Json all = Json::object();
+        for (const Replicate& r : replicates_) {
+            for (const auto& [name, own] : r.result.at("mutation_statistics").items()) {
+                Json& sum = all[name];
+                if (sum.is_null())
+                    sum = {{"proposed", 0},  {"accepted", 0},     {"zero", 0}, {"rejected", Json::object()},
+                           {"seconds", 0.0}, {"esjd_pixels", 0.0}};
+                const double before = sum["proposed"].get<double>(), more = own.at("proposed").get<double>();
+                if (before + more > 0)
+                    sum["esjd_pixels"] =
+                        (sum["esjd_pixels"].get<double>() * before + own.at("esjd_pixels").get<double>() * more) /
+                        (before + more);
+                for (const char* count : {"proposed", "accepted", "zero"})
+                    sum[count] = sum[count].get<std::uint64_t>() + own.at(count).get<std::uint64_t>();
+                sum["seconds"] = sum["seconds"].get<double>() + own.at("seconds").get<double>();
+                for (const auto& [reason, count] : own.at("rejected").items())
+                    sum["rejected"][reason] =
+                        sum["rejected"].value(reason, std::uint64_t{0}) + count.get<std::uint64_t>();
+            }
+        }
+        summary_.json["mutation_statistics"] = std::move(all);
+    }
+
+    void addFeatures() {
+        const Features& features = cell_.task.scene->scene.features;
+        Json all = Json::object();
+        std::vector<std::vector<double>> shares;
+        for (const Replicate& r : replicates_) {
+            std::vector<double> energy;
+            for (const std::string& name : features.names)
+                energy.push_back(r.result.at("feature_energy").value(name, 0.0));
+            const double total = std::accumulate(energy.begin(), energy.end(), 0.0);
+            if (!(total > 0)) continue;
+            for (double& e : energy) e /= total;
+            shares.push_back(std::move(energy));
+        }
+        double jumps = 0, mutations = 0;
+        for (const Replicate& r : replicates_)
+            jumps += r.result.at("feature_jumps").get<double>(), mutations += r.result.at("mutations").get<double>();
+        const auto found = statistics::featureShares(shares, reference_.featureShares);
+        for (std::size_t f = 0; f < found.size(); ++f) {
+            std::vector<double> column;
+            for (const auto& replicate : shares) column.push_back(replicate[f]);
+            all[features.names[f]] = {{"share", found[f].share},
+                                      {"share_ci95", interval(found[f].ci95)},
+                                      {"truth", found[f].truth ? Json(*found[f].truth) : Json()},
+                                      {"p_adjusted", found[f].truth ? Json(found[f].pAdjusted) : Json()},
+                                      {"relative_sd", number(statistics::coefficientOfVariation(column))},
+                                      {"jumps_per_million", mutations > 0 ? Json(1e6 * jumps / mutations) : Json()},
+                                      {"per_replicate", column}};
+            if (found[f].truth && found[f].pAdjusted < statistics::kFamilyLevel) ++wrongFeatures_;
+        }
+        summary_.json["features"] = std::move(all);
+        summary_.json["feature_grid"] = {features.rows, features.columns};
+    }
+
+    void judgeReference() {
+        summary_.halvesAgree = reference_.halvesAgree;
+        const bool tooNoisy =
+            std::ranges::any_of(summary_.errors, [](double e) { return e <= 0; }) ||
+            summary_.referenceVariance > statistics::kReferenceShare * statistics::mean(summary_.errors);
+        summary_.json["reference_variance"] = summary_.referenceVariance;
+        summary_.json["reference_too_poor"] = tooNoisy || !reference_.halvesAgree;
+        if (tooNoisy)
+            warnings_.push_back(
+                "the reference is too poor: its own variance is more than 10 % of the error, which cannot be judged");
+        if (!reference_.halvesAgree)
+            warnings_.push_back("the two halves of the reference disagree: it needs a larger budget");
+    }
+
+    void addWarnings() {
+        if (replicates_.size() < std::size_t(cell_.task.replicates))
+            warnings_.push_back(fmt::format("{} of {} replicates are missing",
+                                            std::size_t(cell_.task.replicates) - replicates_.size(),
+                                            cell_.task.replicates));
+        if (flatter_)
+            warnings_.push_back(fmt::format("the error falls slower than 1 / time: {}, or the image is biased",
+                                            hasChains() ? "chains are trapped" : "it comes from rare bright samples"));
+        if (wrongFeatures_ > 0)
+            warnings_.push_back(
+                fmt::format("the brightness of {} of {} features is wrong (t over replicates, Holm, 5 %)",
+                            wrongFeatures_, cell_.task.scene->scene.features.names.size()));
+        std::uint64_t nonFinite = 0;
+        int black = 0;
+        for (const Replicate& r : replicates_) {
+            for (const auto& [cause, count] : r.result.at("non_finite").items())
+                nonFinite += count.get<std::uint64_t>();
+            black += std::ranges::all_of(r.image.pixels, [](const Rgb& p) { return p == Rgb(0); });
+        }
+        if (nonFinite > 0)
+            warnings_.push_back(fmt::format("{} contributions were not finite and were left out", nonFinite));
+        if (black > 0)
+            warnings_.push_back(
+                fmt::format("{} of {} images are all black: no path carried light", black, replicates_.size()));
+    }
+
+    const Plan& plan_;
+    const Cell& cell_;
+    const Reference& reference_;
+    fs::path folder_;
+    const Metric& primary_;
+    std::vector<Replicate> replicates_;
+    CellSummary summary_;
+    std::vector<std::string> warnings_;
+    bool flatter_ = false;
+    int wrongFeatures_ = 0;
+};
+
+}  // namespace
+
+CellSummary summarizeCell(const Plan& plan, const Cell& cell, const Reference& reference, const fs::path& runDir) {
+    return CellAnalysis(plan, cell, reference, runDir).summarize();
+}
+
+}  // namespace ulam

@@ -1,0 +1,130 @@
+#pragma once
+// An experiment as users write it: keys, defaults and checks. Every key is described here once; the parser, its error
+// messages and the JSON Schema come from the descriptions.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/config/json.h"
+#include "core/config/parameters.h"
+#include "core/render/driver.h"
+
+namespace ulam {
+
+/// Limits of a run; the first reached ends it. 0 stands for none, and cannot be written.
+struct BudgetParameters {
+    double time = 0, spp = 0, mutations = 0, rays = 0;
+
+    template <class V>
+    void describe(V& v) {
+        v("time", time, {.help = "wall time of the render phase, seeding included", .unit = "seconds", .min = 0});
+        v("spp", spp, {.help = "samples per pixel (of chains: mutations per pixel)", .min = 0});
+        v("mutations", mutations, {.help = "mutations of all chains; for samplers with chains only", .min = 0});
+        v("rays", rays, {.help = "rays traced", .min = 0});
+    }
+};
+
+struct ReferenceParameters {
+    JsonNode sampler, budget;
+    int replicates = 16;
+    std::string image, variance;
+
+    template <class V>
+    void describe(V& v) {
+        v("sampler", sampler,
+          {.help = "sampler that makes the reference: a registered name, a name in samplers, or parameters"});
+        v("budget", budget, {.help = "of all replicates of the reference together"});
+        v("replicates", replicates,
+          {.help = "independent runs, half of them in each of two halves that must agree", .min = 4, .max = 1024});
+        v("image", image, {.help = "EXR file to take instead, relative to the experiment"});
+        v("variance", variance,
+          {.help = "EXR file with the variance of that image's pixels; NAME.variance.exr where not given"});
+    }
+};
+
+struct ExperimentParameters {
+    std::string schema, name;
+    JsonNode scene, scenes, film;
+    int maxDepth = 8;
+    JsonNode samplers;
+    std::string baseline;
+    JsonNode budget;
+    int replicates = 16;
+    std::uint64_t seed = 1;
+    int snapshots = 6;
+    JsonNode metrics{Json{"relmse", "mape", "flip"}};
+    JsonNode reference, sweep;
+
+    template <class V>
+    void describe(V& v) {
+        v("$schema", schema, {.help = "JSON Schema for editors; not read"});
+        v("name", name, {.help = "of the run; that of the file where not given"});
+        v("scene", scene, {.help = "the only scene: a dictionary, a generator, or a file relative to the experiment"});
+        v("scenes", scenes, {.help = "scenes by name, each as under scene"});
+        v("film", film, {.help = "width, height, crop_* and rfilter, for all scenes"});
+        v("max_depth", maxDepth,
+          {.help = "longest path in edges, for all samplers and the reference; 1 = emitters seen directly", .min = 1});
+        v("samplers", samplers, {.help = "samplers by name, each with its type and parameters"});
+        v("baseline", baseline, {.help = "sampler that the others are compared with; none: no comparisons"});
+        v("budget", budget, {.help = "what each replicate may spend"});
+        v("replicates", replicates, {.help = "independent runs of each sampler on each scene", .min = 1, .max = 10000});
+        v("seed", seed, {.help = "master seed"});
+        v("snapshots", snapshots,
+          {.help = "images at 1/2, 1/4, ... of the budget, for convergence", .min = 0, .max = 20});
+        v("metrics", metrics, {.help = "error metrics; the first is primary and carries the verdict"});
+        v("reference", reference,
+          {.help = "\"truth\", an EXR file, or a sampler with its budget; or each of these by scene"});
+        v("sweep", sweep, {.help = "values by path into the experiment; several paths make a grid"});
+    }
+};
+
+struct ReferenceSpec {
+    enum class Kind { Sampler, Truth, File } kind = Kind::Sampler;
+    Json parameters;  ///< of the sampler, resolved
+    Budget budget;    ///< of all replicates together
+    int replicates = 0;
+    std::filesystem::path image, variance;
+    std::string where;  ///< in the experiment, for messages
+};
+
+struct NamedScene {
+    std::string name;
+    JsonNode node;
+    ReferenceSpec reference;
+};
+
+struct NamedSampler {
+    std::string name;
+    Json parameters;  ///< "type" and every parameter, max_depth included
+    bool chains;      ///< are its units mutations?
+};
+
+/// A checked experiment without its sweep: one point of it.
+struct Experiment {
+    std::string name;
+    std::filesystem::path folder;  ///< relative paths start here
+    std::vector<NamedScene> scenes;
+    Json film;
+    int maxDepth;
+    std::vector<NamedSampler> samplers;
+    std::string baseline;
+    Budget budget;
+    int replicates;
+    std::uint64_t seed;
+    int snapshots;
+    std::vector<std::string> metrics;
+};
+
+/// Checks everything except what needs a scene to be built. Fails with InvalidConfig and the place.
+Experiment parseExperiment(const JsonNode& root, const std::filesystem::path& folder, const std::string& defaultName);
+
+Budget parseBudget(const JsonNode& node);
+/// The limits that are set.
+Json budgetJson(const Budget& budget);
+
+/// JSON Schema (draft 7) of an experiment, with what is registered in the program.
+Json experimentSchema();
+
+}  // namespace ulam

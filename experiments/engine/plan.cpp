@@ -1,0 +1,276 @@
+#include "experiments/engine/plan.h"
+
+#include <chrono>
+#include <numeric>
+
+#include "core/base/error.h"
+#include "core/base/sha256.h"
+#include "experiments/engine/provenance.h"
+#include "experiments/statistics/comparison.h"
+
+namespace ulam {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// References do not depend on an experiment's seed, so that experiments can share them.
+constexpr std::uint64_t kReferenceSeed = 0x7265666572656e63;
+
+std::uint64_t hash64(const std::string& text) {
+    return std::stoull(sha256(text).substr(0, 16), nullptr, 16);
+}
+
+std::string sweptOrigin(const SweepValue& value) {
+    return fmt::format("sweep {}={}", value.path, value.value.dump());
+}
+
+class Planner {
+public:
+    Planner(const JsonDocument& document, const fs::path& file) : document_(document), file_(file) {}
+
+    Plan make() {
+        const JsonNode root = document_.root();
+        plan_.experiment = root.json();
+        plan_.source = file_.string();
+        const std::optional<JsonNode> sweep = root.isObject() ? root.find("sweep") : std::nullopt;
+        const std::vector<SweepPoint> points = sweep ? expandSweep(*sweep, root) : std::vector<SweepPoint>(1);
+        for (const SweepPoint& point : points) addPoint(point);
+        return std::move(plan_);
+    }
+
+private:
+    void addPoint(const SweepPoint& point) {
+        JsonDocument document = document_;
+        for (const SweepValue& value : point) document.set(value.path, value.value, sweptOrigin(value));
+        const Experiment e = parseExperiment(document.root(), file_.parent_path(), file_.stem().string());
+        plan_.name = e.name;
+        plan_.metrics = e.metrics;
+        plan_.seed = e.seed;
+        for (const NamedScene& scene : e.scenes) {
+            const auto planned = plannedScene(scene, e);
+            const std::size_t reference = referenceFor(scene.reference, planned, e);
+            std::vector<std::size_t> indices;
+            for (const NamedSampler& sampler : e.samplers)
+                indices.push_back(cellFor(point, planned, sampler, reference, e));
+            for (std::size_t i = 0; i < indices.size(); ++i)
+                for (std::size_t b = 0; b < indices.size(); ++b)
+                    if (e.samplers[b].name == e.baseline && b != i) addComparison({indices[i], indices[b]});
+        }
+    }
+
+    std::shared_ptr<const PlannedScene> plannedScene(const NamedScene& scene, const Experiment& e) {
+        const std::string key = scene.name + scene.node.json().dump() + e.film.dump();
+        auto& known = scenes_[key];
+        if (known) return known;
+        const auto start = std::chrono::steady_clock::now();
+        const SceneDescription description = SceneDescription::fromNode(scene.node, e.folder);
+        auto planned = std::make_shared<PlannedScene>();
+        planned->name = scene.name;
+        planned->film = e.film;
+        planned->description = scene.node.isString() ? description.dictionary() : scene.node.json();
+        if (description.generator()) {
+            // Shares the description, which owns the generator.
+            planned->generator = {std::make_shared<SceneDescription>(description), description.generator()};
+            if (scene.node.isObject()) {
+                const JsonNode type = scene.node.at("type");
+                planned->description.update(
+                    Registry<Generator>::instance().find(type.string(), type).resolve(scene.node));
+            }
+        }
+        planned->filmSize = description.filmSize(e.film);
+        planned->scene = description.build(e.film);
+        planned->setupSeconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        return known = planned;
+    }
+
+    std::size_t referenceFor(const ReferenceSpec& spec, const std::shared_ptr<const PlannedScene>& scene,
+                             const Experiment& e) {
+        PlannedReference reference{"", spec, scene, {}};
+        Json identity = {{"scene", scene->scene.hash}};
+        std::string kind;
+        switch (spec.kind) {
+            case ReferenceSpec::Kind::Truth:
+                if (!scene->generator || !scene->generator->truth({8, 8, 0, 0, 8, 8}))
+                    fail(ExitCode::InvalidConfig, "no closed form of the image of scene {} is known at {}", scene->name,
+                         spec.where);
+                if (scene->scene.filter.type() != ReconstructionFilter::Type::Box)
+                    fail(ExitCode::InvalidConfig,
+                         "the truth at {} is known for the box filter only; set \"rfilter\": {{\"type\": \"box\"}} in "
+                         "\"film\"",
+                         spec.where);
+                kind = "truth";
+                break;
+            case ReferenceSpec::Kind::File:
+                kind = "file";
+                identity["image"] = sha256OfFile(spec.image.string());
+                identity["variance"] = sha256OfFile(spec.variance.string());
+                break;
+            case ReferenceSpec::Kind::Sampler: {
+                Task& task = reference.task;
+                task.scene = scene;
+                task.sampler = kind = spec.parameters["type"].get<std::string>();
+                task.parameters = spec.parameters;
+                task.replicates = spec.replicates;
+                task.maxDepth = e.maxDepth;
+                task.seed = kReferenceSeed;
+                const auto part = [&](const std::optional<double>& whole) {
+                    return whole ? std::optional(*whole / spec.replicates) : std::nullopt;
+                };
+                task.budget = {part(spec.budget.seconds), part(spec.budget.spp), part(spec.budget.mutations),
+                               part(spec.budget.rays)};
+                identity["task"] = task.hash();
+                identity["program"] = programHash();  // another build may have another bug
+                identity["replicates"] = spec.replicates;
+                break;
+            }
+        }
+        reference.key = fmt::format("{}-{}", kind, sha256(identity.dump()).substr(0, 16));
+        reference.task.name = reference.key;
+        for (std::size_t i = 0; i < plan_.references.size(); ++i)
+            if (plan_.references[i].key == reference.key) return i;
+        plan_.references.push_back(std::move(reference));
+        return plan_.references.size() - 1;
+    }
+
+    std::size_t cellFor(const SweepPoint& point, const std::shared_ptr<const PlannedScene>& scene,
+                        const NamedSampler& sampler, std::size_t reference, const Experiment& e) {
+        Cell cell;
+        cell.reference = reference;
+        Task& task = cell.task;
+        task.name = fmt::format("{}-{}", scene->name, sampler.name);
+        for (const SweepValue& value : point) {
+            if (!affects(value, scene->name, sampler.name)) continue;
+            task.name += "," + value.label;
+            cell.sweep[value.path] = value.value;
+        }
+        task.scene = scene;
+        task.sampler = sampler.name;
+        task.parameters = sampler.parameters;
+        task.budget = e.budget;
+        task.maxDepth = e.maxDepth;
+        task.replicates = e.replicates;
+        task.snapshots = e.snapshots;
+        task.seed = e.seed;
+        const auto [known, added] = cells_.try_emplace(task.name, plan_.cells.size());
+        if (added) plan_.cells.push_back(std::move(cell));
+        return known->second;
+    }
+
+    void addComparison(PlannedComparison comparison) {
+        for (const PlannedComparison& c : plan_.comparisons)
+            if (c.cell == comparison.cell && c.baseline == comparison.baseline) return;
+        plan_.comparisons.push_back(comparison);
+    }
+
+    const JsonDocument& document_;
+    const fs::path& file_;
+    Plan plan_;
+    std::map<std::string, std::shared_ptr<const PlannedScene>> scenes_;
+    std::map<std::string, std::size_t> cells_;
+};
+
+Json taskJson(const Task& task) {
+    Json keys = Json::array();
+    for (int r = 0; r < task.replicates; ++r) keys.push_back({task.key(r).low, task.key(r).high});
+    return {{"scene", task.scene->name},
+            {"scene_hash", task.scene->scene.hash},
+            {"sampler", task.sampler},
+            {"parameters", task.parameters},
+            {"budget", budgetJson(task.budget)},
+            {"max_depth", task.maxDepth},
+            {"replicates", task.replicates},
+            {"snapshots", task.snapshots},
+            {"seed", task.seed},
+            {"random_keys", std::move(keys)},
+            {"task_hash", task.hash()}};
+}
+
+}  // namespace
+
+RandomKey Task::key(int replicate) const {
+    return makeKey(seed, hash64(name), static_cast<std::uint64_t>(replicate));
+}
+
+std::string Task::hash() const {
+    return sha256(Json{{"name", name},
+                       {"scene", scene->scene.hash},
+                       {"parameters", parameters},
+                       {"budget", budgetJson(budget)},
+                       {"max_depth", maxDepth},
+                       {"snapshots", snapshots},
+                       {"seed", seed},
+                       {"version", programVersion()}}
+                      .dump());
+}
+
+std::vector<Plan::Replicate> Plan::order() const {
+    std::vector<Replicate> all;
+    int blocks = 0;
+    for (const Cell& cell : cells) blocks = std::max(blocks, cell.task.replicates);
+    for (int block = 0; block < blocks; ++block) {
+        const auto begin = static_cast<std::ptrdiff_t>(all.size());
+        for (std::size_t c = 0; c < cells.size(); ++c)
+            if (block < cells[c].task.replicates) all.push_back({c, block});
+        Random random(makeKey(seed, hash64("order of the cells")), 0, static_cast<std::uint64_t>(block));
+        for (auto n = static_cast<std::ptrdiff_t>(all.size()) - begin; n > 1; --n)
+            std::swap(all[static_cast<std::size_t>(begin + n - 1)],
+                      all[static_cast<std::size_t>(begin + random.index(static_cast<int>(n)))]);
+    }
+    return all;
+}
+
+std::vector<double> Plan::smallestAdjustedP() const {
+    std::vector<std::pair<std::size_t, std::size_t>> sizes;
+    for (const PlannedComparison& c : comparisons)
+        sizes.emplace_back(cells[c.cell].task.replicates, cells[c.baseline].task.replicates);
+    return statistics::smallestAdjustedP(sizes);
+}
+
+Json Plan::resolved() const {
+    Json referencesJson = Json::object(), cellsJson = Json::array(), scenesJson = Json::object(),
+         comparisonsJson = Json::array();
+    for (const PlannedReference& reference : references) {
+        Json& json = referencesJson[reference.key];
+        switch (reference.spec.kind) {
+            case ReferenceSpec::Kind::Sampler:
+                json = taskJson(reference.task);
+                break;
+            case ReferenceSpec::Kind::Truth:
+                json = {{"truth", true}, {"scene", reference.scene->name}};
+                break;
+            case ReferenceSpec::Kind::File:
+                json = {{"image", reference.spec.image.string()}, {"variance", reference.spec.variance.string()}};
+                break;
+        }
+    }
+    for (const Cell& cell : cells) {
+        Json json = {{"cell", cell.task.name}};
+        json.update(taskJson(cell.task));
+        json["sweep"] = cell.sweep;
+        json["reference"] = references[cell.reference].key;
+        cellsJson.push_back(std::move(json));
+        const PlannedScene& scene = *cell.task.scene;
+        scenesJson[scene.scene.hash] = {{"name", scene.name},
+                                        {"description", scene.description},
+                                        {"film", scene.film},
+                                        {"width", scene.scene.sensor->width()},
+                                        {"height", scene.scene.sensor->height()}};
+    }
+    for (const PlannedComparison& c : comparisons)
+        comparisonsJson.push_back({{"cell", cells[c.cell].task.name}, {"baseline", cells[c.baseline].task.name}});
+    return {{"schema_version", 1},
+            {"name", name},
+            {"source", source},
+            {"seed", seed},
+            {"metrics", metrics},
+            {"scenes", scenesJson},
+            {"references", referencesJson},
+            {"cells", cellsJson},
+            {"comparisons", comparisonsJson}};
+}
+
+Plan makePlan(const JsonDocument& document, const fs::path& file) {
+    return Planner(document, file).make();
+}
+
+}  // namespace ulam

@@ -1,0 +1,102 @@
+#include "experiments/engine/provenance.h"
+
+#include <sys/utsname.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <ctime>
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+#include "build_info.h"
+#include "core/base/file.h"
+#include "core/base/sha256.h"
+
+namespace ulam {
+namespace {
+
+/// The value of the first "key : value" line of a file of the kernel; empty where there is none.
+std::string kernelValue(const char* file, std::string_view key) {
+    std::ifstream stream(file);
+    for (std::string line; std::getline(stream, line);) {
+        if (!line.starts_with(key)) continue;
+        const std::size_t colon = line.find(':');
+        if (colon == line.npos) continue;
+        const std::size_t begin = line.find_first_not_of(" \t", colon + 1);
+        return begin == line.npos ? "" : line.substr(begin);
+    }
+    return "";
+}
+
+std::string hostName() {
+    char name[256] = {};
+    return ::gethostname(name, sizeof name - 1) == 0 ? name : "";
+}
+
+}  // namespace
+
+std::string programVersion() {
+    return build::kVersion;
+}
+
+const std::string& programHash() {
+    static const std::string hash = sha256OfFile("/proc/self/exe");
+    return hash;
+}
+
+std::vector<std::string> processArguments() {
+    std::vector<std::string> arguments;
+    std::ifstream stream("/proc/self/cmdline");
+    for (std::string argument; std::getline(stream, argument, '\0');) arguments.push_back(argument);
+    return arguments;
+}
+
+std::string utcNow() {
+    const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+    std::tm parts{};
+    ::gmtime_r(&now, &parts);
+    char text[32];
+    return std::string(text, std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts));
+}
+
+Json provenance(const std::vector<std::string>& arguments) {
+    utsname system{};
+    ::uname(&system);
+    return {
+        {"schema_version", 1},
+        {"started", utcNow()},
+        {"arguments", arguments},
+        {"folder", std::filesystem::current_path().string()},
+        {"program",
+         {{"name", "ulam"},
+          {"version", build::kVersion},
+          {"commit", build::kCommit},
+          {"build", build::kType},
+          {"compiler", build::kCompiler},
+          {"flags", build::kFlags},
+          {"cmake", build::kCmake},
+          {"executable_sha256", programHash()}}},
+        {"libraries",
+         {{"embree", build::kEmbree},
+          {"openimageio", build::kOpenImageIo},
+          {"imath", build::kImath},
+          {"tbb", build::kTbb},
+          {"boost", build::kBoost},
+          {"fmt", build::kFmt},
+          {"nlohmann_json", build::kJson},
+          {"cli11", build::kCli11}}},
+        {"machine",
+         {{"host", hostName()},
+          {"system", system.sysname},
+          {"kernel", system.release},
+          {"architecture", system.machine},
+          {"distribution", kernelValue("/etc/os-release", "PRETTY_NAME")},
+          {"cpu", kernelValue("/proc/cpuinfo", "model name")},
+          {"cpu_flags", kernelValue("/proc/cpuinfo", "flags")},
+          {"cores", std::thread::hardware_concurrency()},
+          {"memory", kernelValue("/proc/meminfo", "MemTotal")}}},
+    };
+}
+
+}  // namespace ulam

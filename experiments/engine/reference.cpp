@@ -1,0 +1,269 @@
+#include "experiments/engine/reference.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <numeric>
+
+#include "core/base/file.h"
+#include "core/config/suggest.h"
+#include "core/image/image_io.h"
+#include "experiments/engine/provenance.h"
+#include "experiments/engine/replicate.h"
+#include "experiments/statistics/holm.h"
+
+namespace ulam {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kFiles[] = {"image.exr", "variance.exr", "result.json"};
+
+fs::path folderOf(const PlannedReference& reference, const fs::path& runDir) {
+    return runDir / "references" / reference.key;
+}
+
+/// result.json is written last.
+bool isComplete(const fs::path& folder) {
+    return fs::exists(folder / "result.json");
+}
+
+void write(const PlannedReference& reference, const fs::path& folder, const Image& image, const Image& variance,
+           Json result) {
+    makeFolder(folder);
+    const ImageAttributes attributes = {{"ulam:version", programVersion()},
+                                        {"ulam:scene", reference.scene->name},
+                                        {"ulam:scene_hash", reference.scene->scene.hash},
+                                        {"ulam:sampler", reference.spec.parameters.dump()},
+                                        {"ulam:seed", std::to_string(reference.task.seed)}};
+    writeExr(folder / "image.exr", image, attributes);
+    writeExr(folder / "variance.exr", variance, attributes);
+    Json fields = {{"schema_version", 1},
+                   {"key", reference.key},
+                   {"scene", reference.scene->name},
+                   {"scene_hash", reference.scene->scene.hash}};
+    fields.update(result);
+    writeFileAtomically(folder / "result.json", dump(fields) + "\n");
+}
+
+/// The cache is a convenience: where it cannot be written, the next run makes the reference again.
+void fillCache(const fs::path& folder, const std::string& key) {
+    const fs::path cached = referenceCache() / key;
+    std::error_code error;
+    const fs::path temporary = cached.string() + fmt::format(".{}", ::getpid());
+    fs::create_directories(temporary, error);
+    for (const char* file : kFiles)
+        if (!error) fs::copy_file(folder / file, temporary / file, fs::copy_options::overwrite_existing, error);
+    if (!error) fs::rename(temporary, cached, error);
+    if (error) fs::remove_all(temporary, error);
+}
+
+Json sharesJson(const Features& features, const std::vector<statistics::MeanEstimate>& shares) {
+    Json json = Json::object();
+    for (std::size_t i = 0; i < shares.size(); ++i) {
+        json[features.names[i]] = {{"mean", shares[i].mean}, {"variance_of_mean", shares[i].varianceOfMean}};
+        if (shares[i].varianceOfMean > 0) json[features.names[i]]["degrees"] = shares[i].degrees;
+    }
+    return json;
+}
+
+std::vector<statistics::MeanEstimate> sharesFromJson(const Features& features, const Json& json) {
+    std::vector<statistics::MeanEstimate> shares;
+    for (const std::string& name : features.names) {
+        if (!json.contains(name)) return {};
+        const Json& share = json[name];
+        shares.push_back({share.at("mean"), share.at("variance_of_mean")});
+        if (share.contains("degrees")) shares.back().degrees = share["degrees"];
+    }
+    return shares;
+}
+
+/// Exact shares from energies; nothing where there is no energy.
+std::vector<statistics::MeanEstimate> exactShares(const std::vector<double>& energies) {
+    const double total = std::accumulate(energies.begin(), energies.end(), 0.0);
+    std::vector<statistics::MeanEstimate> shares;
+    for (const double energy : energies)
+        if (total > 0) shares.push_back({energy / total, 0});
+    return shares;
+}
+
+/// NAME.features.json beside NAME.exr: an energy for each of the scene's features.
+std::vector<statistics::MeanEstimate> companionShares(const fs::path& image, const Features& features) {
+    const fs::path file = fs::path(image).replace_extension(".features.json");
+    if (features.empty() || !fs::exists(file)) return {};
+    const JsonDocument document = JsonDocument::fromFile(file);
+    document.root().allowOnly("feature", features.names);
+    std::vector<double> energies;
+    for (const std::string& name : features.names) energies.push_back(document.root().at(name).number());
+    return exactShares(energies);
+}
+
+void checkSize(const PlannedReference& reference, const Image& image, const fs::path& file) {
+    const Perspective& sensor = *reference.scene->scene.sensor;
+    if (image.width != sensor.width() || image.height != sensor.height())
+        fail(ExitCode::InvalidConfig, "{}: expected {} x {} pixels as of scene {}, found {} x {}", file.string(),
+             sensor.width(), sensor.height(), reference.scene->name, image.width, image.height);
+}
+
+void writeTruth(const PlannedReference& reference, const fs::path& folder) {
+    const Image image = *reference.scene->generator->truth(reference.scene->filmSize);
+    write(reference, folder, image, Image(image.width, image.height),
+          {{"kind", "truth"},
+           {"feature_shares",
+            sharesJson(reference.scene->scene.features, exactShares(reference.scene->generator->featureShares()))}});
+}
+
+void writeFromFile(const PlannedReference& reference, const fs::path& folder) {
+    const Image image = readImage(reference.spec.image), variance = readImage(reference.spec.variance);
+    checkSize(reference, image, reference.spec.image);
+    checkSize(reference, variance, reference.spec.variance);
+    const Features& features = reference.scene->scene.features;
+    write(reference, folder, image, variance,
+          {{"kind", "file"},
+           {"source", reference.spec.image.string()},
+           {"feature_shares", sharesJson(features, companionShares(reference.spec.image, features))}});
+}
+
+/// Mean luminance of every tile.
+std::vector<double> tileMeans(const Image& image) {
+    const int columns = (image.width + kTileSize - 1) / kTileSize, rows = (image.height + kTileSize - 1) / kTileSize;
+    std::vector<double> sums(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows)), counts(sums.size());
+    for (int y = 0; y < image.height; ++y) {
+        for (int x = 0; x < image.width; ++x) {
+            const auto tile = static_cast<std::size_t>(y / kTileSize * columns + x / kTileSize);
+            sums[tile] += luminance(Spectrum(image.at(x, y)));
+            counts[tile] += 1;
+        }
+    }
+    for (std::size_t i = 0; i < sums.size(); ++i) sums[i] /= counts[i];
+    return sums;
+}
+
+double halvesP(const std::vector<Image>& parts) {
+    std::vector<std::vector<double>> tiles;
+    for (const Image& part : parts) tiles.push_back(tileMeans(part));
+    const std::size_t half = parts.size() / 2;
+    std::vector<double> p;
+    for (std::size_t t = 0; t < tiles.front().size(); ++t) {
+        std::vector<double> first, second;
+        for (std::size_t i = 0; i < parts.size(); ++i) (i < half ? first : second).push_back(tiles[i][t]);
+        p.push_back(statistics::welchTest(first, second).p);
+    }
+    return std::ranges::min(statistics::holmAdjusted(p));
+}
+
+/// Each part's shares of its own energy; parts without any light say nothing.
+std::vector<statistics::MeanEstimate> partShares(const std::vector<Json>& results, const Features& features) {
+    std::vector<std::vector<double>> shares(features.names.size());
+    for (const Json& result : results) {
+        std::vector<double> energies;
+        for (const std::string& name : features.names) energies.push_back(result.at("feature_energy").value(name, 0.0));
+        const auto own = exactShares(energies);
+        for (std::size_t i = 0; i < own.size(); ++i) shares[i].push_back(own[i].mean);
+    }
+    std::vector<statistics::MeanEstimate> estimates;
+    for (const auto& values : shares) {
+        if (values.size() < 2) return {};
+        estimates.push_back(statistics::estimateMean(values));
+    }
+    return estimates;
+}
+
+double total(const std::vector<Json>& results, const char* field) {
+    double sum = 0;
+    for (const Json& result : results) sum += result.at(field).get<double>();
+    return sum;
+}
+
+}  // namespace
+
+CombinedParts combineParts(const std::vector<Image>& parts) {
+    CombinedParts combined;
+    const Image& first = parts.front();
+    combined.image = Image(first.width, first.height);
+    combined.variance = Image(first.width, first.height);
+    const auto n = static_cast<double>(parts.size());
+    for (std::size_t i = 0; i < first.pixels.size(); ++i) {
+        Spectrum sum(0), squares(0);
+        for (const Image& part : parts) sum += Spectrum(part.pixels[i]);
+        const Spectrum mean = sum / n;
+        for (const Image& part : parts) {
+            const Spectrum d = Spectrum(part.pixels[i]) - mean;
+            squares += d * d;
+        }
+        combined.image.pixels[i] = Rgb(mean);
+        combined.variance.pixels[i] = Rgb(squares / ((n - 1) * n));
+    }
+    combined.smallestP = halvesP(parts);
+    return combined;
+}
+
+fs::path referenceCache() {
+    const char* folder = std::getenv("XDG_CACHE_HOME");
+    if (folder && *folder) return fs::path(folder) / "ulam/references";
+    const char* home = std::getenv("HOME");
+    return fs::path(home && *home ? home : "/tmp") / ".cache/ulam/references";
+}
+
+bool prepareReference(const PlannedReference& reference, const fs::path& runDir) {
+    const fs::path folder = folderOf(reference, runDir);
+    if (isComplete(folder)) return true;
+    if (reference.spec.kind == ReferenceSpec::Kind::Truth) return writeTruth(reference, folder), true;
+    if (reference.spec.kind == ReferenceSpec::Kind::File) return writeFromFile(reference, folder), true;
+    const fs::path cached = referenceCache() / reference.key;
+    if (!isComplete(cached)) return false;
+    makeFolder(folder);
+    for (const char* file : kFiles) writeFileAtomically(folder / file, readFile(cached / file));
+    return true;
+}
+
+fs::path partsFolder(const PlannedReference& reference, const fs::path& runDir) {
+    return folderOf(reference, runDir) / "parts";
+}
+
+void finishReference(const PlannedReference& reference, const fs::path& runDir) {
+    std::vector<Image> images;
+    std::vector<Json> results;
+    for (int part = 0; part < reference.task.replicates; ++part) {
+        results.push_back(finishedReplicate(reference.task, part, partsFolder(reference, runDir)));
+        images.push_back(readImage(replicateFolder(partsFolder(reference, runDir), part) / "image.exr"));
+    }
+    const CombinedParts combined = combineParts(images);
+    if (std::ranges::all_of(combined.image.pixels, [](const Rgb& p) { return p == Rgb(0); }))
+        fail(ExitCode::InvalidConfig,
+             "no path carried light: the reference of scene {} is black. Is the camera inside a wall, or max_depth too "
+             "small?",
+             reference.scene->name);
+    const Features& features = reference.scene->scene.features;
+    const fs::path folder = folderOf(reference, runDir);
+    write(reference, folder, combined.image, combined.variance,
+          {{"kind", "sampler"},
+           {"parameters", reference.spec.parameters},
+           {"budget", budgetJson(reference.spec.budget)},
+           {"replicates", reference.spec.replicates},
+           {"halves_smallest_p", combined.smallestP},
+           {"halves_agree", combined.smallestP >= kHalvesLevel},
+           {"wall_seconds", total(results, "wall_seconds")},
+           {"rays", total(results, "rays")},
+           {"samples", total(results, "samples")},
+           {"mutations", total(results, "mutations")},
+           {"feature_shares", sharesJson(features, partShares(results, features))}});
+    fillCache(folder, reference.key);
+    fs::remove_all(partsFolder(reference, runDir));
+}
+
+Reference readReference(const PlannedReference& reference, const fs::path& runDir) {
+    const fs::path folder = folderOf(reference, runDir);
+    const Json result = JsonDocument::fromFile(folder / "result.json").json();
+    Reference read;
+    read.image = readImage(folder / "image.exr");
+    read.variance = readImage(folder / "variance.exr");
+    checkSize(reference, read.image, folder / "image.exr");
+    read.halvesAgree = result.value("halves_agree", true);
+    read.featureShares =
+        sharesFromJson(reference.scene->scene.features, result.value("feature_shares", Json::object()));
+    return read;
+}
+
+}  // namespace ulam

@@ -1,0 +1,147 @@
+#include "experiments/engine/result.h"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+
+#include "core/base/error.h"
+#include "core/base/file.h"
+#include "core/base/sha256.h"
+#include "core/mcmc/mutation_mix.h"
+#include "experiments/engine/mixing.h"
+#include "experiments/engine/provenance.h"
+
+namespace ulam {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::uint64_t peakResidentBytes() {
+    rusage usage{};
+    ::getrusage(RUSAGE_SELF, &usage);
+    return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+Json mutationJson(const MutationStatistics& m) {
+    Json rejected = Json::object();
+    for (int reason = 1; reason < kRejectReasons; ++reason)
+        if (m.rejected[reason] > 0) rejected[name(Reject(reason))] = m.rejected[reason];
+    return {{"proposed", m.proposed}, {"accepted", m.accepted},
+            {"zero", m.zero},         {"rejected", rejected},
+            {"seconds", m.seconds},   {"esjd_pixels", m.proposed ? m.squaredJump / double(m.proposed) : 0}};
+}
+
+std::string snapshotFile(std::size_t index) {
+    return fmt::format("snapshots/s{:02}.exr", index);
+}
+
+}  // namespace
+
+Json resolveSampler(const JsonNode& sampler) {
+    const JsonNode type = sampler.at("type");
+    Json resolved = {{"type", type.string()}};
+    resolved.update(Registry<Sampler>::instance().find(type.string(), type).resolve(sampler));
+    // A sampler takes its mix as it is written; every sampler with one calls it so.
+    if (resolved.contains("mutations")) {
+        const auto written = sampler.find("mutations");
+        resolved["mutations"] = MutationMix::resolve(written ? *written : JsonNode(resolved["mutations"]));
+    }
+    return resolved;
+}
+
+Json resultJson(const RunIdentity& run, const RenderResult& result, const Features& features) {
+    const RenderStatistics& s = result.statistics;
+    Json mutations = Json::object();
+    for (const auto& [name, statistics] : s.mutationStatistics) mutations[name] = mutationJson(statistics);
+    Json energy = Json::object();
+    for (std::size_t i = 0; i < std::min(features.names.size(), s.featureEnergy.size()); ++i)
+        energy[features.names[i]] = s.featureEnergy[i];
+    Json snapshots = Json::array();
+    for (std::size_t i = 0; i < result.snapshots.size(); ++i) {
+        const Snapshot& shot = result.snapshots[i];
+        snapshots.push_back({{"fraction", shot.fraction},
+                             {"seconds", shot.seconds},
+                             {"rays", shot.rays},
+                             {"samples", shot.samples},
+                             {"mutations", shot.mutations},
+                             {"image", snapshotFile(i)}});
+    }
+    return {
+        {"schema_version", 1},
+        {"scene", run.scene},
+        {"scene_hash", run.sceneHash},
+        {"sampler", run.sampler},
+        {"parameters", run.parameters},
+        {"seed", run.seed},
+        {"replicate", run.replicate},
+        {"random_key", {run.key.low, run.key.high}},
+        {"threads", run.threads},
+        {"wall_seconds", result.wallSeconds},
+        {"cpu_seconds", result.cpuSeconds},
+        {"setup_seconds", run.setupSeconds},
+        {"seeding_seconds", s.seedingSeconds},
+        {"units", result.units},
+        {"rays", s.rays},
+        {"samples", s.samples},
+        {"mutations", s.mutations},
+        {"chains", s.chains},
+        {"normalization", s.normalization},
+        {"normalization_std_error", s.normalizationStandardError},
+        {"mutation_statistics", mutations},
+        {"feature_energy", energy},
+        {"feature_jumps", s.featureJumps},
+        {"non_finite", s.nonFinite},
+        {"bias_ledger", s.biasLedger},
+        {"diagnostics", s.diagnostics},
+        {"mixing", mixing(s.traces, result.wallSeconds)},
+        {"snapshots", snapshots},
+        {"width", result.image.width},
+        {"height", result.image.height},
+        {"peak_rss_bytes", peakResidentBytes()},
+        {"image_sha256", imageHash(result.image)},
+        {"interrupted", result.interrupted},
+        {"program_version", programVersion()},
+    };
+}
+
+ImageAttributes imageAttributes(const RunIdentity& run) {
+    return {{"ulam:version", programVersion()},      {"ulam:scene", run.scene},
+            {"ulam:scene_hash", run.sceneHash},      {"ulam:sampler", run.parameters.dump()},
+            {"ulam:seed", std::to_string(run.seed)}, {"ulam:replicate", std::to_string(run.replicate)}};
+}
+
+void refuseBlackImage(const RenderResult& result) {
+    const auto black = [](const Rgb& p) { return p.x == 0 && p.y == 0 && p.z == 0; };
+    if (!std::all_of(result.image.pixels.begin(), result.image.pixels.end(), black)) return;
+    fail(ExitCode::InvalidConfig,
+         "no path carried light: all of {} samples and mutations found nothing. Is the camera inside a wall or "
+         "looking away, does nothing emit, is max_depth too small (1 shows emitters only), or the budget?",
+         std::max(result.units, result.statistics.samples));
+}
+
+std::string imageHash(const Image& image) {
+    std::string bytes = fmt::format("{} {} ", image.width, image.height);
+    bytes.append(reinterpret_cast<const char*>(image.pixels.data()), image.pixels.size() * sizeof(Rgb));
+    return sha256(bytes);
+}
+
+void makeFolder(const fs::path& folder) {
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (error) fail(ExitCode::CannotWrite, "cannot make the folder {}: {}", folder.string(), error.message());
+}
+
+void writeRun(const fs::path& folder, const RunIdentity& run, const RenderResult& result, const Json& resultFields) {
+    makeFolder(folder);
+    const ImageAttributes attributes = imageAttributes(run);
+    if (!result.snapshots.empty()) makeFolder(folder / "snapshots");
+    for (std::size_t i = 0; i < result.snapshots.size(); ++i)
+        writeExr(folder / snapshotFile(i), result.snapshots[i].image, attributes);
+    if (!result.statistics.extraImages.empty()) makeFolder(folder / "extra");
+    for (const auto& [name, image] : result.statistics.extraImages)
+        writeExr(folder / "extra" / (name + ".exr"), image, attributes);
+    writeExr(folder / "image.exr", result.image, attributes);
+    writeFileAtomically(folder / "result.json", dump(resultFields) + "\n");
+}
+
+}  // namespace ulam

@@ -1,0 +1,171 @@
+#include "experiments/engine/run.h"
+
+#include <algorithm>
+#include <map>
+
+#include "core/base/error.h"
+#include "core/base/file.h"
+#include "experiments/engine/provenance.h"
+#include "experiments/engine/reference.h"
+#include "experiments/engine/replicate.h"
+
+namespace ulam {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kTrialSeconds = 0.3;
+
+/// How much of the whole is done, in expected seconds: time budgets are known beforehand, other work is as long as that
+/// of the same task was, and before that as long as an average piece.
+class Workload {
+public:
+    explicit Workload(const Plan& plan) {
+        for (const Cell& cell : plan.cells) left_[&cell.task] = cell.task.replicates;
+    }
+
+    void add(const Task& task) { left_[&task] = task.replicates; }
+    void skip(const Task& task) { --left_[&task]; }
+    void finish(const Task& task, double seconds) {
+        --left_[&task];
+        spent_[&task].first += seconds;
+        spent_[&task].second += 1;
+        done_ += seconds;
+    }
+
+    /// `current` is the fraction of the replicate that runs now, of `task`.
+    double fraction(const Task& task, double current) const {
+        double remaining = 0;
+        for (const auto& [t, count] : left_) remaining += count * expected(*t);
+        const double now = done_ + current * expected(task), all = done_ + remaining;
+        return all > 0 ? std::min(1.0, now / all) : 0;
+    }
+
+private:
+    double expected(const Task& task) const {
+        if (const auto own = spent_.find(&task); own != spent_.end()) return own->second.first / own->second.second;
+        if (task.budget.seconds) return *task.budget.seconds;
+        double seconds = 0, count = 0;
+        for (const auto& [t, spent] : spent_) seconds += spent.first, count += spent.second;
+        return count > 0 ? seconds / count : 1;
+    }
+
+    std::map<const Task*, int> left_;
+    std::map<const Task*, std::pair<double, double>> spent_;  // seconds and replicates
+    double done_ = 0;
+};
+
+class Runner {
+public:
+    Runner(const Plan& plan, const RunOptions& options, const std::atomic<bool>& interrupt, Progress& progress)
+        : plan_(plan), options_(options), interrupt_(interrupt), progress_(progress), workload_(plan) {}
+
+    RunOutcome run() {
+        writeHeader();
+        makeReferences();
+        if (!outcome_.interrupted) renderCells();
+        progress_.clear();
+        return std::move(outcome_);
+    }
+
+private:
+    void writeHeader() {
+        makeFolder(options_.runDir);
+        Json origin = provenance(processArguments());
+        origin["threads"] = options_.threads;
+        writeFileAtomically(options_.runDir / "experiment.json", dump(plan_.experiment) + "\n");
+        writeFileAtomically(options_.runDir / "resolved.json", dump(plan_.resolved()) + "\n");
+        writeFileAtomically(options_.runDir / "provenance.json", dump(origin) + "\n");
+    }
+
+    void makeReferences() {
+        std::vector<const PlannedReference*> missing;
+        for (const PlannedReference& reference : plan_.references)
+            if (!prepareReference(reference, options_.runDir)) missing.push_back(&reference);
+        for (const PlannedReference* reference : missing) workload_.add(reference->task);
+        for (const PlannedReference* reference : missing) {
+            const fs::path folder = partsFolder(*reference, options_.runDir);
+            for (int part = 0; part < reference->task.replicates; ++part) {
+                const std::string what = fmt::format("reference of {}, part {} of {}", reference->scene->name, part + 1,
+                                                     reference->task.replicates);
+                if (!doReplicate(reference->task, part, folder, what)) return;
+            }
+            finishReference(*reference, options_.runDir);
+        }
+    }
+
+    void renderCells() {
+        for (const Plan::Replicate& next : plan_.order()) {
+            const Cell& cell = plan_.cells[next.cell];
+            const std::string what =
+                fmt::format("{}, replicate {} of {}", cell.task.name, next.number + 1, cell.task.replicates);
+            const int before = reused_;
+            try {
+                if (!doReplicate(cell.task, next.number, cellFolder(options_.runDir, cell), what)) return;
+                ++(reused_ > before ? outcome_.reused : outcome_.rendered);
+            } catch (const Error& error) {
+                if (!options_.keepGoing || error.code() == ExitCode::CannotWrite)
+                    throw Error(error.code(), fmt::format("{}: {}", what, error.what()));
+                outcome_.failures.push_back({cell.task.name, next.number, error.what()});
+                progress_.message(fmt::format("failed: {}: {}", what, error.what()));
+                workload_.skip(cell.task);
+            }
+        }
+    }
+
+    /// Returns false where a signal came.
+    bool doReplicate(const Task& task, int replicate, const fs::path& folder, const std::string& what) {
+        if (!finishedReplicate(task, replicate, folder).is_null()) {
+            workload_.skip(task);
+            ++reused_;
+            return true;
+        }
+        const auto start = std::chrono::steady_clock::now();
+        const auto report = [&](double fraction) { progress_.update(workload_.fraction(task, fraction), what); };
+        if (interrupt_ || !renderReplicate(task, replicate, folder, options_.threads, interrupt_, report)) {
+            outcome_.interrupted = true;
+            return false;
+        }
+        workload_.finish(task, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+        report(0);
+        return true;
+    }
+
+    const Plan& plan_;
+    const RunOptions& options_;
+    const std::atomic<bool>& interrupt_;
+    Progress& progress_;
+    Workload workload_;
+    RunOutcome outcome_;
+    int reused_ = 0;
+};
+
+}  // namespace
+
+RunOutcome runPlan(const Plan& plan, const RunOptions& options, const std::atomic<bool>& interrupt,
+                   Progress& progress) {
+    return Runner(plan, options, interrupt, progress).run();
+}
+
+fs::path cellFolder(const fs::path& runDir, const Cell& cell) {
+    return runDir / "cells" / cell.task.name;
+}
+
+double estimateSeconds(const Task& task, int threads) {
+    if (task.budget.seconds) return *task.budget.seconds;
+    RenderOptions options;
+    options.budget = task.budget;
+    options.budget.seconds = kTrialSeconds;
+    options.key = task.key(0);
+    options.threads = threads;
+    const auto sampler = Registry<Sampler>::instance().create(JsonNode(task.parameters));
+    const RenderResult trial = render(task.scene->scene, *sampler, options);
+    const double pixels = double(trial.image.width) * trial.image.height, units = std::max(1.0, double(trial.units));
+    double factor = std::numeric_limits<double>::infinity();
+    if (task.budget.spp) factor = std::min(factor, *task.budget.spp * pixels / units);
+    if (task.budget.mutations) factor = std::min(factor, *task.budget.mutations / units);
+    if (task.budget.rays) factor = std::min(factor, *task.budget.rays / std::max(1.0, double(trial.statistics.rays)));
+    return trial.wallSeconds * factor;
+}
+
+}  // namespace ulam

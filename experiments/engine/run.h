@@ -1,0 +1,42 @@
+#pragma once
+// Runs a plan: references first, then the cells in the plan's order. What is finished already is not done again.
+
+#include <atomic>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "experiments/engine/plan.h"
+#include "experiments/engine/progress.h"
+
+namespace ulam {
+
+struct RunOptions {
+    std::filesystem::path runDir;
+    int threads = 1;
+    bool keepGoing = false;  ///< a replicate that fails is reported, and the others go on
+};
+
+struct Failure {
+    std::string cell;
+    int replicate;
+    std::string message;
+};
+
+struct RunOutcome {
+    bool interrupted = false;
+    int rendered = 0, reused = 0;  ///< replicates of cells
+    std::vector<Failure> failures;
+};
+
+/// Writes experiment.json, resolved.json, provenance.json, references/ and cells/. Without keepGoing the first failing
+/// replicate throws; CannotWrite always does.
+RunOutcome runPlan(const Plan& plan, const RunOptions& options, const std::atomic<bool>& interrupt, Progress& progress);
+
+/// RUN_DIR/cells/CELL
+std::filesystem::path cellFolder(const std::filesystem::path& runDir, const Cell& cell);
+
+/// Expected wall seconds of one replicate: its time budget, or extrapolated from a short trial.
+double estimateSeconds(const Task& task, int threads);
+
+}  // namespace ulam

@@ -1,0 +1,194 @@
+#include "experiments/engine/summary.h"
+
+#include <cmath>
+#include <map>
+
+#include "core/base/file.h"
+#include "core/image/metrics.h"
+#include "experiments/statistics/comparison.h"
+#include "experiments/statistics/speedup.h"
+
+namespace ulam {
+namespace {
+
+namespace fs = std::filesystem;
+
+Json finite(double x) {
+    return std::isfinite(x) ? Json(x) : Json();
+}
+Json interval(const std::optional<statistics::Interval>& i) {
+    return i ? Json{finite(i->low), finite(i->high)} : Json();
+}
+
+Json constantsOf(const std::vector<std::string>& names) {
+    Json all = Json::object();
+    for (const std::string& name : names) {
+        const Metric& metric = findMetric(name);
+        Json constants = Json::object();
+        for (const MetricConstant& c : metric.constants) constants[std::string(c.name)] = c.value;
+        all[name] = {{"definition", metric.definition},
+                     {"constants", constants},
+                     {"debiased", metric.debiased},
+                     {"higher_is_better", metric.higherIsBetter}};
+    }
+    return all;
+}
+
+/// One sampler against the baseline: what is compared and what came out.
+struct Judged {
+    const CellSummary* cell;
+    const CellSummary* baseline;
+    statistics::Comparison comparison;
+};
+
+Judged judge(const CellSummary& cell, const CellSummary& baseline) {
+    Judged judged{&cell, &baseline, statistics::compare(cell.errors, baseline.errors, cell.referenceVariance)};
+    if (!cell.halvesAgree) judged.comparison.referenceTooPoor = true;
+    return judged;
+}
+
+Json comparisonJson(const Judged& judged, const std::string& metric) {
+    const statistics::Comparison& c = judged.comparison;
+    std::vector<statistics::CurvePoint> ends;
+    for (const auto& curve : judged.cell->curves) ends.push_back(curve.back());
+    const statistics::Speedup speedup = statistics::speedup(ends, judged.baseline->curves);
+    return {{"scene", judged.cell->json["scene"]},
+            {"sampler", judged.cell->json["sampler"]},
+            {"baseline", judged.baseline->json["sampler"]},
+            {"cell", judged.cell->json["cell"]},
+            {"baseline_cell", judged.baseline->json["cell"]},
+            {"metric", metric},
+            {"ratio", c.ratio ? Json(*c.ratio) : Json()},
+            {"ci95", interval(c.ci95)},
+            {"speedup", speedup.value ? Json(*speedup.value) : Json()},
+            {"speedup_ci95", interval(speedup.ci95)},
+            {"p", c.p},
+            {"p_adjusted", c.pAdjusted},
+            {"verdict", statistics::verdictName(c.verdict)},
+            {"reference_too_poor", c.referenceTooPoor},
+            {"heavy_tailed", c.heavyTailed}};
+}
+
+/// The values of a sweep that tell this cell from others, for a sentence.
+std::string sweepText(const Json& sweep) {
+    std::vector<std::string> parts;
+    for (const auto& [path, value] : sweep.items()) parts.push_back(fmt::format("{} = {}", path, value.dump()));
+    return parts.empty() ? "" : fmt::format(" ({})", fmt::join(parts, ", "));
+}
+
+std::string verdictSentence(const Judged& judged, const Json& comparison) {
+    const statistics::Comparison& c = judged.comparison;
+    const std::string start =
+        fmt::format("{}: {}{}", comparison["scene"].get<std::string>(), comparison["sampler"].get<std::string>(),
+                    sweepText(judged.cell->json["sweep"]));
+    const std::string baseline = comparison["baseline"].get<std::string>(), verdict(statistics::verdictName(c.verdict));
+    const std::string metric = metricTitle(comparison["metric"].get<std::string>());
+    std::string reason;
+    if (c.referenceTooPoor)
+        reason = ", the reference is too poor";
+    else if (!c.ci95)
+        reason = ", too few replicates";
+    if (!c.ratio) return fmt::format("{} against {} in {}: {}{}", start, baseline, metric, verdict, reason);
+    const std::string range = c.ci95 ? fmt::format("95 % {:.3g}–{:.3g}, ", c.ci95->low, c.ci95->high) : "";
+    return fmt::format("{} has {:.3g} times the {} of {} ({}p = {:.2g} adjusted): {}{}", start, *c.ratio, metric,
+                       baseline, range, c.pAdjusted, verdict, reason);
+}
+
+class Summarizer {
+public:
+    Summarizer(const Plan& plan, const fs::path& runDir) : plan_(plan), runDir_(runDir) {}
+
+    Json make(const std::vector<Failure>& failures) {
+        summarizeCells();
+        Json summary = {{"schema_version", 1},
+                        {"name", plan_.name},
+                        {"primary_metric", plan_.metrics.front()},
+                        {"metrics", constantsOf(plan_.metrics)}};
+        compareAll(summary);
+        Json cells = Json::array();
+        for (const CellSummary& cell : cells_) {
+            if (cell.errors.empty()) continue;
+            cells.push_back(cell.json);
+            for (const Json& warning : cell.json["warnings"])
+                warn("{}: {}", cell.json["cell"].get<std::string>(), warning.get<std::string>());
+        }
+        summary["cells"] = std::move(cells);
+        Json failed = Json::array();
+        for (const Failure& f : failures) {
+            failed.push_back({{"cell", f.cell}, {"replicate", f.replicate}, {"message", f.message}});
+            warn("{}: replicate {} failed: {}", f.cell, f.replicate, f.message);
+        }
+        summary["failures"] = std::move(failed);
+        summary["warnings"] = warnings_;
+        return summary;
+    }
+
+private:
+    template <class... Arguments>
+    void warn(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
+        warnings_.push_back(fmt::format(format, std::forward<Arguments>(arguments)...));
+    }
+
+    void summarizeCells() {
+        std::map<std::size_t, Reference> references;
+        for (const Cell& cell : plan_.cells) {
+            auto known = references.find(cell.reference);
+            if (known == references.end())
+                known =
+                    references.emplace(cell.reference, readReference(plan_.references[cell.reference], runDir_)).first;
+            cells_.push_back(summarizeCell(plan_, cell, known->second, runDir_));
+            if (cells_.back().errors.empty()) warn("{}: no replicate finished", cell.task.name);
+        }
+    }
+
+    void compareAll(Json& summary) {
+        std::vector<Judged> judged;
+        for (const PlannedComparison& c : plan_.comparisons)
+            if (!cells_[c.cell].errors.empty() && !cells_[c.baseline].errors.empty())
+                judged.push_back(judge(cells_[c.cell], cells_[c.baseline]));
+        std::vector<statistics::Comparison> family;
+        for (const Judged& j : judged) family.push_back(j.comparison);
+        statistics::decide(family);
+
+        Json comparisons = Json::array(), verdicts = Json::array();
+        for (std::size_t i = 0; i < judged.size(); ++i) {
+            judged[i].comparison = family[i];
+            comparisons.push_back(comparisonJson(judged[i], plan_.metrics.front()));
+            verdicts.push_back(verdictSentence(judged[i], comparisons.back()));
+            if (family[i].heavyTailed)
+                warn("{} against {}: the errors are heavy-tailed, so that the interval may cover less than 95 %",
+                     judged[i].cell->json["cell"].get<std::string>(),
+                     judged[i].baseline->json["cell"].get<std::string>());
+        }
+        summary["comparisons"] = std::move(comparisons);
+        summary["verdicts"] = std::move(verdicts);
+    }
+
+    const Plan& plan_;
+    const fs::path& runDir_;
+    std::vector<CellSummary> cells_;
+    std::vector<std::string> warnings_;
+};
+
+}  // namespace
+
+std::string metricTitle(const std::string& metric) {
+    static const std::map<std::string, std::string> titles = {
+        {"relmse", "relMSE"}, {"mse", "MSE"},   {"mae", "MAE"},   {"mape", "MAPE"},
+        {"smape", "SMAPE"},   {"psnr", "PSNR"}, {"ssim", "SSIM"}, {"flip", "FLIP"}};
+    const auto found = titles.find(metric);
+    return found == titles.end() ? metric : found->second;
+}
+
+Json summarize(const Plan& plan, const fs::path& runDir, const std::vector<Failure>& failures) {
+    return Summarizer(plan, runDir).make(failures);
+}
+
+void writeSummary(const fs::path& runDir, const Json& summary) {
+    writeFileAtomically(runDir / "summary.json", dump(summary) + "\n");
+    writeFileAtomically(runDir / "summary.csv", summaryCsv(summary));
+    writeFileAtomically(runDir / "summary.md", summaryMarkdown(summary));
+    writeFileAtomically(runDir / "summary.tex", summaryLatex(summary));
+}
+
+}  // namespace ulam

@@ -1,0 +1,37 @@
+#pragma once
+// What a run found: summary.json and its renderings, from the files of the run.
+
+#include <filesystem>
+
+#include "experiments/engine/reference.h"
+#include "experiments/engine/run.h"
+#include "experiments/statistics/curve.h"
+
+namespace ulam {
+
+/// A cell's finished replicates and what they amount to.
+struct CellSummary {
+    Json json;                              ///< its entry in summary.json
+    std::vector<double> errors;             ///< primary metric of each finished replicate
+    std::vector<statistics::Curve> curves;  ///< per replicate: seconds and primary metric, snapshots and final image
+    double referenceVariance = 0;           ///< what debiasing subtracted from each error
+    bool halvesAgree = true;
+};
+
+CellSummary summarizeCell(const Plan& plan, const Cell& cell, const Reference& reference,
+                          const std::filesystem::path& runDir);
+
+/// The whole of summary.json. Cells without a finished replicate are left out, with a warning.
+Json summarize(const Plan& plan, const std::filesystem::path& runDir, const std::vector<Failure>& failures);
+
+/// summary.json, summary.csv, summary.md and summary.tex.
+void writeSummary(const std::filesystem::path& runDir, const Json& summary);
+
+std::string summaryCsv(const Json& summary);
+std::string summaryMarkdown(const Json& summary);
+std::string summaryLatex(const Json& summary);
+
+/// "relMSE" of "relmse"
+std::string metricTitle(const std::string& metric);
+
+}  // namespace ulam

@@ -1,0 +1,124 @@
+// The summary as tables: one row a cell and metric (CSV), one a cell (Markdown, LaTeX).
+
+#include "experiments/engine/summary.h"
+
+namespace ulam {
+namespace {
+
+std::string text(const Json& value, const char* format = "{:.4g}") {
+    if (value.is_number_float()) return fmt::format(fmt::runtime(format), value.get<double>());
+    if (value.is_string()) return value.get<std::string>();
+    return value.is_null() ? "" : value.dump();
+}
+
+std::string csvField(const Json& value) {
+    const std::string plain = text(value, "{}");
+    if (plain.find_first_of(",\"\n") == plain.npos) return plain;
+    std::string quoted = "\"";
+    for (const char c : plain) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return quoted + "\"";
+}
+
+std::string intervalText(const Json& interval, const char* to) {
+    if (!interval.is_array()) return "";
+    return text(interval[0], "{:.3g}") + to + (interval[1].is_null() ? "∞" : text(interval[1], "{:.3g}"));
+}
+
+std::string latexText(const std::string& plain) {
+    std::string safe;
+    for (const char c : plain) {
+        if (std::string_view("_&%$#{}").find(c) != std::string_view::npos) safe += '\\';
+        safe += c;
+    }
+    return safe;
+}
+
+/// "2.31 (1.9–2.8)" of the comparison in which a cell is judged; empty for baselines.
+struct CellVerdict {
+    std::string ratio, speedup, p, verdict;
+};
+CellVerdict verdictOf(const Json& summary, const Json& cell, const char* to) {
+    for (const Json& c : summary["comparisons"]) {
+        if (c["cell"] != cell["cell"]) continue;
+        const auto withInterval = [&](const char* value, const char* range) {
+            if (c[value].is_null()) return std::string();
+            return c[range].is_null() ? text(c[value], "{:.3g}")
+                                      : fmt::format("{} ({})", text(c[value], "{:.3g}"), intervalText(c[range], to));
+        };
+        return {withInterval("ratio", "ci95"), withInterval("speedup", "speedup_ci95"), text(c["p_adjusted"], "{:.2g}"),
+                text(c["verdict"])};
+    }
+    return {};
+}
+
+}  // namespace
+
+std::string summaryCsv(const Json& summary) {
+    std::string csv =
+        "cell,scene,sampler,replicates,metric,mean,ci95_low,ci95_high,trimmed_mean,worst_replicate,variance,bias_"
+        "squared,seconds,rays,mutations,normalization_cv\n";
+    for (const Json& cell : summary["cells"]) {
+        for (const auto& [name, metric] : cell["metrics"].items()) {
+            const Json low = metric["ci95"].is_array() ? metric["ci95"][0] : Json(),
+                       high = metric["ci95"].is_array() ? metric["ci95"][1] : Json();
+            std::vector<std::string> row;
+            for (const Json& value :
+                 {cell["cell"], cell["scene"], cell["sampler"], cell["replicates"], Json(name), metric["mean"], low,
+                  high, metric["trimmed_mean"], metric["worst_replicate"], cell["variance"], cell["bias_squared"],
+                  cell["seconds"], cell["rays"], cell["mutations"], cell["normalization_cv"]})
+                row.push_back(csvField(value));
+            csv += fmt::format("{}\n", fmt::join(row, ","));
+        }
+    }
+    return csv;
+}
+
+std::string summaryMarkdown(const Json& summary) {
+    std::string md = fmt::format("# {}\n\n", summary["name"].get<std::string>());
+    for (const Json& verdict : summary["verdicts"]) md += fmt::format("- {}\n", verdict.get<std::string>());
+    std::vector<std::string> metrics;
+    for (const auto& [name, definition] : summary["metrics"].items()) metrics.push_back(name);
+    md += "\n| cell | replicates |";
+    for (const std::string& name : metrics) md += fmt::format(" {} (95 %) |", metricTitle(name));
+    md += " seconds | rays | ratio (95 %) | speed-up (95 %) | p adjusted | verdict |\n|---|--:|";
+    for (std::size_t i = 0; i < metrics.size(); ++i) md += "--:|";
+    md += "--:|--:|--:|--:|--:|---|\n";
+    for (const Json& cell : summary["cells"]) {
+        md += fmt::format("| {} | {} |", text(cell["cell"]), text(cell["replicates"]));
+        for (const std::string& name : metrics) {
+            const Json& metric = cell["metrics"][name];
+            const std::string range = intervalText(metric["ci95"], "–");
+            md += fmt::format(" {}{} |", text(metric["mean"]), range.empty() ? "" : " (" + range + ")");
+        }
+        const CellVerdict v = verdictOf(summary, cell, "–");
+        md += fmt::format(" {} | {} | {} | {} | {} | {} |\n", text(cell["seconds"], "{:.3g}"),
+                          text(cell["rays"], "{:.3g}"), v.ratio, v.speedup, v.p, v.verdict);
+    }
+    if (!summary["warnings"].empty()) md += "\n## Warnings\n\n";
+    for (const Json& warning : summary["warnings"]) md += fmt::format("- {}\n", warning.get<std::string>());
+    return md;
+}
+
+std::string summaryLatex(const Json& summary) {
+    const std::string metric = summary["primary_metric"].get<std::string>();
+    std::string tex = fmt::format(
+        "% needs the package booktabs\n\\begin{{tabular}}{{llrrrrl}}\n\\toprule\nscene & sampler & {} & 95\\,\\% & "
+        "ratio & $p$ & verdict \\\\\n\\midrule\n",
+        metricTitle(metric));
+    for (const Json& cell : summary["cells"]) {
+        const CellVerdict v = verdictOf(summary, cell, "--");
+        std::string sampler = text(cell["sampler"]);
+        for (const auto& [path, value] : cell["sweep"].items())
+            sampler += fmt::format(", {} {}", path.substr(path.find_last_of('.') + 1), text(value));
+        std::string ratio = v.ratio;
+        if (const auto infinity = ratio.find("∞"); infinity != ratio.npos)
+            ratio.replace(infinity, std::string_view("∞").size(), "$\\infty$");
+        const Json& error = cell["metrics"][metric];
+        tex +=
+            fmt::format("{} & {} & {} & {} & {} & {} & {} \\\\\n", latexText(text(cell["scene"])), latexText(sampler),
+                        text(error["mean"]), intervalText(error["ci95"], "--"), ratio, v.p, v.verdict);
+    }
+    return tex + "\\bottomrule\n\\end{tabular}\n";
+}
+
+}  // namespace ulam

@@ -1,0 +1,29 @@
+#pragma once
+// A sweep: values of keys of an experiment, and the grid they make.
+
+#include <string>
+#include <vector>
+
+#include "core/config/json.h"
+
+namespace ulam {
+
+/// One key with one of its values.
+struct SweepValue {
+    std::string path;  ///< "samplers.mlt.chains"
+    Json value;
+    std::string label;  ///< "chains=100", fit for a folder's name
+};
+
+/// One point of the grid; empty for an experiment without a sweep.
+using SweepPoint = std::vector<SweepValue>;
+
+/// All points, the last key running fastest. A key's values are a list, or {"log": [first, last], "steps": n}: equal
+/// ratios, whole numbers where both ends are. {"zip": {key: list, …}} pairs lists of equal length. Fails with
+/// InvalidConfig; `experiment` is what the paths lead into.
+std::vector<SweepPoint> expandSweep(const JsonNode& sweep, const JsonNode& experiment);
+
+/// Does a value touch a cell of this scene and sampler? Keys of other scenes and samplers do not.
+bool affects(const SweepValue& value, const std::string& scene, const std::string& sampler);
+
+}  // namespace ulam

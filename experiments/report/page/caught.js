@@ -1,0 +1,130 @@
+// A chain caught in one hole: the worst run's picture beside the reference, and the hole map of that very run.
+
+/// The map of one run as a tiny canvas, a pixel per hole.
+function miniMap(grid, replicate, colour) {
+    const canvas = el("canvas", { width: grid.columns, height: grid.rows, "aria-hidden": true });
+    const context = canvas.getContext("2d");
+    for (const hole of grid.holes) {
+        const rgb = colour(hole.ratios[replicate]);
+        if (!rgb) continue;
+        context.fillStyle = rgbToCss(rgb);
+        context.fillRect(hole.column, hole.row, 1, 1);
+    }
+    return canvas;
+}
+
+const largestHoleError = (cell) => Math.max(...cell.holeErrors.filter(isNumber));
+
+function caughtSentence(cell, replicate) {
+    const holes = cell.grid.holes.filter((hole) => isNumber(hole.ratios[replicate]));
+    const brightest = holes.reduce((a, b) => (b.ratios[replicate] > a.ratios[replicate] ? b : a));
+    const starved = holes.filter((hole) => hole.ratios[replicate] < 0.5).length,
+        empty = holes.filter((hole) => hole.ratios[replicate] === 0).length;
+    return [
+        `In run ${replicate} of ${cell.label}, the hole in row ${brightest.row + 1}, column ${brightest.column + 1} got `,
+        el("b", {}, `${number(brightest.ratios[replicate])} ×`),
+        " its true share; ",
+        el("b", {}, `${starved || "none"} of ${holes.length}`),
+        ` holes got less than half of theirs${empty ? `, ${empty} nothing at all` : ""}. `,
+        `A hole’s brightness is off by ${percent(cell.holeErrors[replicate])} (RMS).`,
+    ];
+}
+
+function caughtFigure(title, content, id) {
+    return el("figure", { id }, content, el("figcaption", {}, title));
+}
+
+function still(id, exposure, label) {
+    const image = picture(id);
+    if (!image) return el("p", { class: "note" }, "no image");
+    const canvas = el("canvas", { width: image.width, height: image.height, role: "img", "aria-label": label });
+    canvas.getContext("2d").drawImage(image.shown(exposure), 0, 0);
+    return canvas;
+}
+
+function caughtPanel(cell) {
+    const { grid } = cell,
+        ids = pictureIds(cell);
+    const worst =
+        [ids.worst_replicate, cell.worst_replicate].find((r) => isNumber(cell.holeErrors[r])) ??
+        cell.holeErrors.indexOf(largestHoleError(cell));
+    const limit = ratioLimit(grid.holes.flatMap((hole) => hole.ratios)),
+        colour = ratioColour(limit);
+    const describe = (hole) => [
+        holeTitle(hole),
+        line(`${number(hole.ratios[worst])} × its true share in run ${worst}`),
+        line(`mean over runs ${number(hole.ratio)} ×`),
+    ];
+    const reference = picture(ids.reference),
+        exposure = reference ? fittingExposure(reference) : 0;
+    return el(
+        "div",
+        { class: "caught" },
+        el("p", { class: "sentence" }, caughtSentence(cell, worst)),
+        el(
+            "div",
+            { class: "caught-figures" },
+            caughtFigure("reference", still(ids.reference, exposure, "reference")),
+            caughtFigure(
+                `${cell.label}, run ${worst} (the worst)`,
+                still(ids.worst, exposure, `${cell.label}, run ${worst}`),
+            ),
+            caughtFigure(
+                "its holes: share over true share",
+                holeMap(grid, {
+                    name: `run ${worst} of ${cell.label}`,
+                    colour: (hole) => colour(hole.ratios[worst]),
+                    describe,
+                }),
+            ),
+            el(
+                "div",
+                { class: "all-runs" },
+                ratioBar(limit),
+                el("p", { class: "note" }, "All runs: where the light gathers changes from seed to seed."),
+                el(
+                    "div",
+                    { class: "mini-maps" },
+                    cell.holeErrors.map((error, r) =>
+                        el(
+                            "figure",
+                            { class: r === worst ? "worst" : null },
+                            miniMap(grid, r, colour),
+                            el("figcaption", {}, `${r}: ${percent(error)}`),
+                        ),
+                    ),
+                ),
+            ),
+        ),
+    );
+}
+
+/// Per scene the sampler whose runs are furthest from the truth is shown first; the others by a choice.
+function caughtSection() {
+    const drawn = groups
+        .map((group) => ({
+            group,
+            judged: group.cells
+                .filter((cell) => isNumber(cell.holeError))
+                .sort((a, b) => largestHoleError(b) - largestHoleError(a)),
+        }))
+        .filter(({ judged }) => judged.length);
+    if (!drawn.length) return null;
+    return section(
+        "caught",
+        "A chain caught in one hole",
+        "One run of one sampler, the worst of its replicates by the primary metric: the picture may look free of noise while the brightness of its holes is wrong.",
+        drawn.map(({ group, judged }) => {
+            const panel = el("div", {}, caughtPanel(judged[0]));
+            const choice = el(
+                "select",
+                {
+                    "aria-label": `sampler shown for ${group.title}`,
+                    onchange: () => panel.replaceChildren(caughtPanel(judged[choice.selectedIndex])),
+                },
+                judged.map((cell) => el("option", {}, cell.label)),
+            );
+            return el("div", { class: "group" }, el("h3", {}, group.title, " ", choice), panel);
+        }),
+    );
+}

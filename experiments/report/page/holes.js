@@ -1,0 +1,236 @@
+// Hole occupancy as a picture: measured share over true share, its spread over runs, and jumps between holes.
+
+const kRatioLimits = [1.1, 1.25, 1.5, 2, 3, 4, 8];
+
+/// The smallest round factor that holds nearly all ratios, so that maps beside each other share one scale.
+function ratioLimit(ratios) {
+    const sizes = ratios
+        .filter((r) => r > 0)
+        .map((r) => Math.max(r, 1 / r))
+        .sort((a, b) => a - b);
+    const most = sizes[Math.floor(0.98 * (sizes.length - 1))] ?? 2;
+    return kRatioLimits.find((limit) => limit >= most) ?? kRatioLimits.at(-1);
+}
+
+/// Null, which shows as hatching, for a hole that got nothing.
+const ratioColour = (limit) => (ratio) =>
+    ratio > 0 ? diverging(clamp(Math.log(ratio) / Math.log(limit), -1, 1)) : null;
+
+/// An n×n map: one square per hole, told by hover or by the arrow keys; `colour` and `describe` take a hole.
+function holeMap(grid, { name, colour, describe, mark }) {
+    const root = svg("svg", {
+        class: "hole-map",
+        viewBox: `0 0 ${grid.columns} ${grid.rows}`,
+        role: "img",
+        tabindex: 0,
+        "aria-label": `${name}, ${grid.rows} × ${grid.columns} holes; arrow keys read them`,
+    });
+    const squares = new Map();
+    for (const hole of grid.holes) {
+        const rgb = colour(hole);
+        const square = svg("rect", {
+            "data-hole": `${hole.row},${hole.column}`,
+            x: hole.column,
+            y: hole.row,
+            width: 1,
+            height: 1,
+            fill: rgb ? rgbToCss(rgb) : "none",
+        });
+        withTooltip(square, () => describe(hole));
+        squares.set(`${hole.row},${hole.column}`, { hole, square });
+        root.append(square);
+        if (mark?.(hole))
+            root.append(
+                svg("circle", {
+                    class: "significant",
+                    cx: hole.column + 0.5,
+                    cy: hole.row + 0.5,
+                    r: 0.13,
+                    fill: rgb ? contrastInk(rgb) : "currentColor",
+                }),
+            );
+    }
+    const cursor = svg("rect", { class: "cursor", width: 1, height: 1, visibility: "hidden" });
+    root.append(cursor);
+    let at = [0, 0];
+    const read = () => {
+        const found = squares.get(at.join(","));
+        if (!found) return;
+        setAttributes(cursor, { x: at[1], y: at[0], visibility: "visible" });
+        const box = found.square.getBoundingClientRect();
+        tooltip.show(describe(found.hole), box.right, box.bottom);
+    };
+    root.addEventListener("focus", () => {
+        if (root.matches(":focus-visible")) read();
+    });
+    root.addEventListener("blur", () => {
+        cursor.setAttribute("visibility", "hidden");
+        tooltip.hide();
+    });
+    root.addEventListener("keydown", (e) => {
+        const step = { ArrowLeft: [0, -1], ArrowRight: [0, 1], ArrowUp: [-1, 0], ArrowDown: [1, 0] }[e.key];
+        if (!step) return;
+        e.preventDefault();
+        at = [clamp(at[0] + step[0], 0, grid.rows - 1), clamp(at[1] + step[1], 0, grid.columns - 1)];
+        read();
+    });
+    return root;
+}
+
+const holeTitle = (hole) => el("b", {}, `row ${hole.row + 1}, column ${hole.column + 1}`);
+const line = (text) => el("div", {}, text);
+
+function describeHole(hole) {
+    return [
+        holeTitle(hole),
+        line(`${number(hole.ratio)} × its true share`),
+        line(
+            `share ${percent(hole.share)}${isInterval(hole.share_ci95) ? ` (${interval(hole.share_ci95, percent)})` : ""}, truth ${percent(hole.truth)}`,
+        ),
+        isNumber(hole.p_adjusted) && line(`p = ${pValue(hole.p_adjusted)}${hole.wrong ? ", significantly wrong" : ""}`),
+        isNumber(hole.relative_sd) && line(`relative standard deviation over runs ${percent(hole.relative_sd)}`),
+        isNumber(hole.jumps_per_million) && line(`${number(hole.jumps_per_million)} jumps per million mutations`),
+    ].filter(Boolean);
+}
+
+function occupancyCard(cell, scales) {
+    const { grid } = cell;
+    const small = (field, limit, name, show) => {
+        if (!limit || !grid.holes.some((hole) => isNumber(hole[field]))) return null;
+        const colour = (hole) => (isNumber(hole[field]) ? viridis(Math.sqrt(clamp(hole[field] / limit, 0, 1))) : null);
+        const values = grid.holes.map((hole) => hole[field]).filter(isNumber);
+        return el(
+            "figure",
+            {},
+            holeMap(grid, { name: `${cell.label}: ${name}`, colour, describe: describeHole }),
+            el("figcaption", {}, `${name} `, el("b", {}, show(mean(values)))),
+        );
+    };
+    const facts = [
+        isNumber(cell.wrongHoles) && `${cell.wrongHoles} of ${grid.holes.length} significantly wrong`,
+        isNumber(cell.holeError) && `${percent(cell.holeError)} RMS in one run`,
+    ].filter(Boolean);
+    return el(
+        "div",
+        { class: "hole-card" },
+        el("h4", {}, samplerMark(cell), cell.label),
+        el("p", { class: cell.wrongHoles ? "alarming" : null }, facts.join(" · ")),
+        el(
+            "div",
+            { class: "hole-maps" },
+            el(
+                "figure",
+                {},
+                holeMap(grid, {
+                    name: `${cell.label}: share over true share`,
+                    colour: (hole) => scales.ratio(hole.ratio),
+                    describe: describeHole,
+                    mark: (hole) => hole.wrong,
+                }),
+            ),
+            el(
+                "div",
+                { class: "small-maps" },
+                small("relative_sd", scales.sd, "spread over runs", percent),
+                small("jumps_per_million", scales.jumps, "jumps ∕ 10⁶ mut.", number),
+            ),
+        ),
+    );
+}
+
+const ratioBar = (limit) =>
+    colourBar((t) => diverging(2 * t - 1), [`1∕${plain(limit)}`, "1", plain(limit)], "share over true share");
+
+/// Places other than a grid of holes: a plain table.
+function featureTable(group) {
+    const rows = group.cells.flatMap((cell) =>
+        Object.entries(cell.features ?? {})
+            .filter(([name]) => !holeIndex(name) || !cell.grid)
+            .map(([name, f]) =>
+                el(
+                    "tr",
+                    {},
+                    el("td", { class: "text" }, samplerMark(cell), cell.label),
+                    el("td", { class: "text" }, name),
+                    el("td", {}, percent(f.share), el("span", { class: "ci" }, interval(f.share_ci95, percent))),
+                    el("td", {}, percent(f.truth)),
+                    el("td", { class: f.p_adjusted <= 0.05 ? "alarming" : null }, pValue(f.p_adjusted)),
+                    el("td", {}, percent(f.relative_sd)),
+                    el("td", {}, number(f.jumps_per_million)),
+                ),
+            ),
+    );
+    if (!rows.length) return null;
+    return el(
+        "div",
+        { class: "scroll" },
+        el(
+            "table",
+            {},
+            el(
+                "thead",
+                {},
+                el(
+                    "tr",
+                    {},
+                    ["sampler", "feature", "share", "truth", "p", "spread over runs", "jumps ∕ 10⁶ mutations"].map(
+                        (title) => el("th", { scope: "col" }, title),
+                    ),
+                ),
+            ),
+            el("tbody", {}, rows),
+        ),
+    );
+}
+
+function occupancySection() {
+    const drawn = groups.filter((group) => group.cells.some((cell) => Object.keys(cell.features ?? {}).length));
+    if (!drawn.length) return null;
+    return section(
+        "holes",
+        "Occupancy",
+        "A path belongs to the last hole it crossed before the camera. Blue: the hole got too little light, orange: too much, hatched: nothing; a dot: significantly wrong " +
+            "(t test over runs, Holm, p ≤ 0.05). This shows trapping, which a noise-free image hides.",
+        drawn.map((group) => {
+            const withGrid = group.cells.filter((cell) => cell.grid),
+                holes = withGrid.flatMap((cell) => cell.grid.holes);
+            const largest = (field) => Math.max(0, ...holes.map((hole) => hole[field]).filter(isNumber));
+            const limit = ratioLimit(holes.map((hole) => hole.ratio));
+            const scales = {
+                ratio: ratioColour(limit),
+                sd: largest("relative_sd"),
+                jumps: largest("jumps_per_million"),
+            };
+            const rootScale = (top, show) => ["0", show(top / 4), show(top)];
+            return el(
+                "div",
+                { class: "group" },
+                el("h3", {}, group.title),
+                withGrid.length > 0 &&
+                    el(
+                        "div",
+                        { class: "colour-bars" },
+                        ratioBar(limit),
+                        scales.sd > 0 &&
+                            colourBar(
+                                (t) => viridis(t),
+                                rootScale(scales.sd, percent),
+                                "relative standard deviation over runs",
+                            ),
+                        scales.jumps > 0 &&
+                            colourBar(
+                                (t) => viridis(t),
+                                rootScale(scales.jumps, number),
+                                "jumps per million mutations",
+                            ),
+                    ),
+                el(
+                    "div",
+                    { class: "hole-cards" },
+                    withGrid.map((cell) => occupancyCard(cell, scales)),
+                ),
+                featureTable(group),
+            );
+        }),
+    );
+}

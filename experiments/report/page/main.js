@@ -1,0 +1,55 @@
+// The page, in reading order.
+
+function subtitle() {
+    const experiment = data.experiment ?? {};
+    const budget = Object.entries(experiment.budget ?? {})
+        .map(([kind, value]) => `${count(value, plain)} ${kind === "time" ? "s" : kind}`)
+        .join(" or ");
+    const replicates = [...new Set(cells.map((cell) => cell.replicates).filter(isNumber))];
+    const plural = (n, word) => `${n} ${word}${n === 1 ? "" : "s"}`;
+    const film = experiment.film;
+    return [
+        plural(new Set(cells.map((cell) => cell.scene)).size, "scene"),
+        plural(samplerNames.length, "sampler"),
+        replicates.length && `${replicates.join(", ")} runs each`,
+        budget && `${budget} a run`,
+        film?.width && `${film.width} × ${film.height}`,
+        experiment.max_depth && `path length up to ${experiment.max_depth}`,
+        `primary metric ${metricName(primaryMetric ?? kDash)}`,
+        experiment.baseline && `baseline ${experiment.baseline}`,
+    ]
+        .filter(Boolean)
+        .join(" · ");
+}
+
+function render() {
+    const name = summary.name ?? data.experiment?.name ?? "run";
+    const sections = [
+        verdictSection(),
+        cellsSection(),
+        convergenceSection(),
+        imagesSection(),
+        mutationsSection(),
+        occupancySection(),
+        caughtSection(),
+        ledgerSection(),
+        provenanceSection(),
+    ].filter(Boolean);
+    const links = sections.map((s) => el("a", { href: `#${s.id}` }, s.querySelector("h2").textContent));
+    document
+        .getElementById("page")
+        .replaceChildren(
+            el(
+                "header",
+                {},
+                el("p", { class: "kind" }, "Ulam · comparison at equal cost"),
+                el("h1", {}, name.replace(/_/g, " ")),
+                el("p", { class: "subtitle" }, subtitle()),
+            ),
+            el("nav", { "aria-label": "sections" }, links),
+            el("main", {}, ...[alarmBox()].filter(Boolean), ...sections),
+        );
+}
+
+render();
+matchMedia("(prefers-color-scheme: dark)").addEventListener("change", render);

@@ -1,0 +1,109 @@
+// What the files of the run say, gathered by scene. Every field is optional; a panel without its data is left out.
+
+const data = JSON.parse(document.getElementById("data").textContent);
+const summary = data.summary;
+const cells = (summary.cells ?? []).map((cell) => ({ ...cell, result: data.results[cell.cell] ?? {} }));
+const comparisons = summary.comparisons ?? [];
+const primaryMetric = summary.primary_metric ?? Object.keys(cells[0]?.metrics ?? {})[0];
+const kMetricNames = {
+    relmse: "relMSE",
+    mse: "MSE",
+    mae: "MAE",
+    mape: "MAPE",
+    smape: "SMAPE",
+    psnr: "PSNR",
+    ssim: "SSIM",
+    flip: "FLIP",
+};
+const metricName = (metric) => kMetricNames[metric] ?? metric;
+
+/// The numbers of a feature called "hole_ROW_COL".
+const holeIndex = (name) => /^hole_(\d+)_(\d+)$/.exec(name)?.slice(1).map(Number);
+
+/// Feature occupancy of a cell as a grid, row 0 at the top of the image, or null.
+function holeGrid(cell) {
+    const features = Object.entries(cell.features ?? {}).filter(([name]) => holeIndex(name));
+    if (features.length < 2) return null;
+    const rows = cell.feature_grid?.[0] ?? 1 + Math.max(...features.map(([name]) => holeIndex(name)[0]));
+    const columns = cell.feature_grid?.[1] ?? 1 + Math.max(...features.map(([name]) => holeIndex(name)[1]));
+    const holes = features.map(([name, feature]) => {
+        const [row, column] = holeIndex(name);
+        const ratio = feature.truth > 0 ? feature.share / feature.truth : NaN;
+        const ratios = (feature.per_replicate ?? []).map((share) => (feature.truth > 0 ? share / feature.truth : NaN));
+        return {
+            ...feature,
+            row,
+            column,
+            ratio,
+            ratios,
+            wrong: isNumber(feature.p_adjusted) && feature.p_adjusted <= 0.05,
+        };
+    });
+    return { rows, columns, holes };
+}
+
+/// Relative error of a hole's brightness in one run: root mean square over holes, for each replicate.
+function replicateHoleErrors(grid) {
+    const replicates = Math.max(0, ...grid.holes.map((hole) => hole.ratios.length));
+    return Array.from({ length: replicates }, (_, r) =>
+        rootMeanSquare(grid.holes.map((hole) => hole.ratios[r] - 1).filter(isNumber)),
+    );
+}
+
+for (const cell of cells) {
+    cell.grid = holeGrid(cell);
+    if (!cell.grid) continue;
+    cell.wrongHoles = cell.grid.holes.some((hole) => isNumber(hole.p_adjusted))
+        ? cell.grid.holes.filter((hole) => hole.wrong).length
+        : null;
+    cell.holeErrors = replicateHoleErrors(cell.grid);
+    const known = cell.holeErrors.filter(isNumber);
+    cell.holeError = known.length ? rootMeanSquare(known) : null;
+}
+
+const samplerNames = [...new Set(cells.map((cell) => cell.sampler))];
+
+/// Cells that share scene and reference can be compared: a group. A sweep over the scene gives several.
+const groups = [];
+for (const cell of cells) {
+    const key = JSON.stringify([cell.scene, cell.reference_image ?? cell.reference ?? ""]);
+    let group = groups.find((g) => g.key === key);
+    if (!group) groups.push((group = { key, scene: cell.scene, cells: [] }));
+    group.cells.push(cell);
+    cell.group = group;
+}
+for (const group of groups) {
+    const twins = groups.filter((other) => other.scene === group.scene);
+    group.title = twins.length === 1 ? group.scene : `${group.scene} (${twins.indexOf(group) + 1})`;
+    group.id = `scene-${groups.indexOf(group)}`;
+    for (const cell of group.cells) {
+        const alone = group.cells.filter((other) => other.sampler === cell.sampler).length === 1;
+        cell.label = alone ? cell.sampler : cell.cell;
+        cell.order = alone ? samplerNames.indexOf(cell.sampler) : group.cells.indexOf(cell);
+    }
+}
+
+/// The comparisons that judge a cell (those of a sweep name their cells), and their finished sentences.
+comparisons.forEach((comparison, i) => {
+    comparison.sentence = summary.verdicts?.[i] ?? verdictSentence(comparison);
+});
+const comparisonsOf = (cell) =>
+    comparisons.filter((c) =>
+        c.cell !== undefined ? c.cell === cell.cell : c.scene === cell.scene && c.sampler === cell.sampler,
+    );
+const baselineOf = (cell) => {
+    const comparison = comparisonsOf(cell)[0];
+    return cell.group.cells.find((other) =>
+        comparison?.baseline_cell ? other.cell === comparison.baseline_cell : other.sampler === comparison?.baseline,
+    );
+};
+
+function verdictSentence(c) {
+    const ratio = isNumber(c.ratio)
+        ? `${c.sampler}’s ${metricName(c.metric)} is ${number(c.ratio)} × ${c.baseline}’s (95 % ${interval(c.ci95)}), p = ${pValue(c.p_adjusted ?? c.p)}`
+        : `${c.sampler} against ${c.baseline}`;
+    return `${ratio}: ${c.verdict ?? "undecided"}.`;
+}
+
+const pictureIds = (cell) => data.pictures[cell.cell] ?? {};
+const referenceId = (group) => group.cells.map((cell) => pictureIds(cell).reference).find((id) => id !== undefined);

@@ -1,0 +1,137 @@
+// Acceptance and reasons of rejection: one bar per mutation, with the figures beside it.
+
+const kByRatio = "by the ratio"; // a finished proposal that lost the Metropolis–Hastings draw
+const readable = (name) =>
+    name
+        .replace(/([a-z])([A-Z])/g, "$1 $2")
+        .replace(/_/g, " ")
+        .toLowerCase();
+
+/// Shares of the proposals: accepted, every reason, and what is left: lost by the ratio.
+function outcomeShares(statistics) {
+    const proposed = statistics.proposed || 0;
+    if (!proposed) return [];
+    const reasons = Object.entries(statistics.rejected ?? {}).map(([reason, n]) => [readable(reason), n / proposed]);
+    const accepted = (statistics.accepted ?? 0) / proposed;
+    const rest = 1 - accepted - sum(reasons.map(([, share]) => share));
+    const shares = [["accepted", accepted], ...reasons];
+    if (rest > 1e-9) shares.push([kByRatio, rest]);
+    return shares.filter(([, share]) => share > 0);
+}
+
+const reasonColours = () =>
+    isDark()
+        ? ["#56b4e9", "#ff8a3d", "#e08fc0", "#e69f00", "#f0e442", "#9fd4f5", "#c98a6a"]
+        : ["#0072b2", "#d55e00", "#cc79a7", "#e69f00", "#c9b800", "#56b4e9", "#8a5a3c"];
+
+function outcomeColour(outcome, reasons) {
+    if (outcome === "accepted") return isDark() ? "#2bc59a" : "#009e73";
+    if (outcome === kByRatio) return css("--neutral-bar");
+    const colours = reasonColours();
+    return colours[reasons.indexOf(outcome) % colours.length];
+}
+
+function outcomeBar(shares, reasons) {
+    const bar = el("div", {
+        class: "outcome-bar",
+        role: "img",
+        "aria-label": shares.map(([name, share]) => `${name} ${percent(share)}`).join(", "),
+    });
+    for (const [name, share] of shares)
+        bar.append(
+            withTooltip(
+                el("span", { style: `flex-grow: ${share}; background: ${outcomeColour(name, reasons)}` }),
+                () => `${name} ${percent(share)}`,
+            ),
+        );
+    return bar;
+}
+
+function mutationsSection() {
+    const judged = cells.filter((cell) => Object.keys(cell.mutation_statistics ?? {}).length);
+    if (!judged.length) return null;
+    const rows = judged.flatMap((cell) =>
+        Object.entries(cell.mutation_statistics).map(([name, statistics], i, all) => ({
+            cell,
+            name,
+            statistics,
+            first: i === 0,
+            span: all.length,
+            shares: outcomeShares(statistics),
+        })),
+    );
+    const outcomes = [...new Set(rows.flatMap((row) => row.shares.map(([name]) => name)))];
+    const reasons = outcomes.filter((name) => name !== "accepted" && name !== kByRatio);
+    const columns = ["accepted", ...reasons, ...(outcomes.includes(kByRatio) ? [kByRatio] : [])];
+    const withZero = rows.some((row) => row.statistics.zero > 0);
+    const body = rows.map(({ cell, name, statistics, first, span, shares }) => {
+        const share = Object.fromEntries(shares);
+        return el(
+            "tr",
+            { class: first ? "first" : null },
+            first &&
+                el(
+                    "th",
+                    { scope: "rowgroup", rowspan: span },
+                    samplerMark(cell),
+                    cell.label,
+                    el("span", { class: "ci" }, cell.group.title),
+                ),
+            el("td", { class: "text" }, name),
+            el("td", { class: "bar" }, outcomeBar(shares, reasons)),
+            el("td", {}, count(statistics.proposed)),
+            columns.map((column) => el("td", {}, share[column] ? percent(share[column]) : kDash)),
+            withZero &&
+                el(
+                    "td",
+                    {},
+                    statistics.zero && statistics.proposed ? percent(statistics.zero / statistics.proposed) : kDash,
+                ),
+            el(
+                "td",
+                {},
+                statistics.seconds && statistics.proposed
+                    ? number((1e6 * statistics.seconds) / statistics.proposed)
+                    : kDash,
+            ),
+            el("td", {}, number(statistics.esjd_pixels)),
+        );
+    });
+    const head = (title, meaning) => el("th", { scope: "col", title: meaning }, title);
+    return section(
+        "mutations",
+        "Mutations",
+        "What became of the proposals, summed over runs.",
+        el(
+            "div",
+            { class: "scroll" },
+            el(
+                "table",
+                { id: "mutation-table" },
+                el(
+                    "thead",
+                    {},
+                    el(
+                        "tr",
+                        {},
+                        head("sampler"),
+                        head("mutation"),
+                        head(""),
+                        head("proposed"),
+                        columns.map((name) =>
+                            el(
+                                "th",
+                                { scope: "col", class: "outcome", style: `--outcome: ${outcomeColour(name, reasons)}` },
+                                el("span", {}, name),
+                            ),
+                        ),
+                        withZero && head("zero", "proposals whose contribution is zero, for whatever reason"),
+                        head("µs", "time of one proposal"),
+                        head("jump²", "expected squared jump on the image, in square pixels"),
+                    ),
+                ),
+                el("tbody", {}, body),
+            ),
+        ),
+    );
+}

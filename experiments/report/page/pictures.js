@@ -1,0 +1,104 @@
+// HDR pictures in the page: base64 of RGB9E5 (three 9-bit mantissas, one 5-bit exponent, little-endian; value = m · 2^(e − 24)).
+
+const kErrorRange = [0.01, 10]; // of the false colours, relative error
+const kRelativeEpsilon = 0.01; // added to r², as in relMSE
+
+class Picture {
+    constructor(id) {
+        Object.assign(this, data.images[id]);
+        this.id = id;
+        this.canvas = document.createElement("canvas");
+        this.canvas.width = this.width;
+        this.canvas.height = this.height;
+    }
+
+    get rgb() {
+        if (this.decoded) return this.decoded;
+        const bytes = atob(document.getElementById(`image-${this.id}`).textContent);
+        const scale = Array.from({ length: 32 }, (_, e) => 2 ** (e - 24));
+        const out = new Float32Array(3 * this.width * this.height);
+        for (let i = 0, j = 0; j < out.length; i += 4, j += 3) {
+            const word =
+                bytes.charCodeAt(i) |
+                (bytes.charCodeAt(i + 1) << 8) |
+                (bytes.charCodeAt(i + 2) << 16) |
+                (bytes.charCodeAt(i + 3) << 24);
+            const unit = scale[word >>> 27];
+            out[j] = (word & 511) * unit;
+            out[j + 1] = ((word >>> 9) & 511) * unit;
+            out[j + 2] = ((word >>> 18) & 511) * unit;
+        }
+        return (this.decoded = out);
+    }
+
+    /// Relative error of pixel i: √ of the mean over channels of (x − r)² / (r² + ε).
+    relativeError(i, reference) {
+        const x = this.rgb,
+            r = reference.rgb;
+        let total = 0;
+        for (let c = 3 * i; c < 3 * i + 3; ++c) total += (x[c] - r[c]) ** 2 / (r[c] ** 2 + kRelativeEpsilon);
+        return Math.sqrt(total / 3);
+    }
+
+    /// The canvas with the picture at an exposure (in stops) or, with a reference, its relative error in false colour.
+    shown(exposure, reference) {
+        const stamp = reference ? `error ${reference.id}` : `exposure ${exposure}`;
+        if (this.stamp === stamp) return this.canvas;
+        this.stamp = stamp;
+        const pixels = new ImageData(this.width, this.height);
+        if (reference) this.paintError(pixels.data, reference);
+        else this.paintTones(pixels.data, exposure);
+        this.canvas.getContext("2d").putImageData(pixels, 0, 0);
+        return this.canvas;
+    }
+
+    paintTones(out, exposure) {
+        const gain = 2 ** exposure * 4095,
+            rgb = this.rgb;
+        for (let i = 0, j = 0; j < rgb.length; i += 4, j += 3) {
+            for (let c = 0; c < 3; ++c) out[i + c] = kToneCurve[Math.min(4095, rgb[j + c] * gain) | 0];
+            out[i + 3] = 255;
+        }
+    }
+
+    paintError(out, reference) {
+        const [lo, hi] = kErrorRange.map(Math.log);
+        for (let i = 0; i < this.width * this.height; ++i) {
+            const t = clamp((Math.log(this.relativeError(i, reference) + 1e-12) - lo) / (hi - lo), 0, 1);
+            const [r, g, b] = kErrorPalette[Math.round(t * 255)];
+            out[4 * i] = r;
+            out[4 * i + 1] = g;
+            out[4 * i + 2] = b;
+            out[4 * i + 3] = 255;
+        }
+    }
+}
+
+const kToneCurve = Uint8Array.from({ length: 4096 }, (_, i) => linearToByte(i / 4095));
+const kErrorPalette = palette(magma);
+const pictureCache = new Map();
+function picture(id) {
+    if (id === undefined || id === null || !data.images[id]) return null;
+    if (!pictureCache.has(id)) pictureCache.set(id, new Picture(id));
+    return pictureCache.get(id);
+}
+
+/// The exposure, in half stops, that puts the 99th percentile of the picture just below white.
+function fittingExposure(image) {
+    const values = [];
+    for (let i = 0; i < image.rgb.length; i += 3)
+        values.push(Math.max(image.rgb[i], image.rgb[i + 1], image.rgb[i + 2]));
+    values.sort((a, b) => a - b);
+    const bright = values[Math.floor(0.99 * (values.length - 1))];
+    return bright > 0 ? clamp(Math.floor(-2 * Math.log2(bright)) / 2, -12, 12) : 0;
+}
+
+/// Sizes the canvas to its box in device pixels and returns its context.
+function fitCanvas(canvas) {
+    const ratio = devicePixelRatio || 1,
+        box = canvas.getBoundingClientRect();
+    const width = Math.max(1, Math.round(box.width * ratio)),
+        height = Math.max(1, Math.round(box.height * ratio));
+    if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
+    return canvas.getContext("2d");
+}

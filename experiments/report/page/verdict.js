@@ -1,0 +1,153 @@
+// The answer first: one sentence per comparison, its ratio with interval drawn beside it, and what the holes say.
+
+const kVerdictWords = ["better", "worse", "undecided"];
+
+function sentenceWithMarkedVerdict(comparison) {
+    const word = comparison.verdict;
+    const at = kVerdictWords.includes(word) ? comparison.sentence.lastIndexOf(word) : -1;
+    if (at < 0) return [comparison.sentence];
+    return [
+        comparison.sentence.slice(0, at),
+        el("strong", { class: `verdict ${word}` }, word),
+        comparison.sentence.slice(at + word.length),
+    ];
+}
+
+/// What an image metric hides: whether the brightness of the holes is right.
+function holeSentence(cell, baseline) {
+    if (!cell?.grid) return null;
+    const total = cell.grid.holes.length;
+    const error =
+        isNumber(cell.holeError) &&
+        `one run gets a hole’s brightness wrong by ${percent(cell.holeError)} (RMS` +
+            `${isNumber(baseline?.holeError) ? `; ${baseline.label} ${percent(baseline.holeError)}` : ""})`;
+    const wrong =
+        isNumber(cell.wrongHoles) &&
+        `over all runs ${cell.wrongHoles} of ${total} are significantly wrong` +
+            `${isNumber(baseline?.wrongHoles) ? ` (${baseline.label} ${baseline.wrongHoles})` : ""}`;
+    const parts = [error, wrong].filter(Boolean);
+    if (!parts.length) return null;
+    const verdict = comparisonsOf(cell)[0]?.verdict;
+    const hidden = verdict === "better" && baseline?.holeError < cell.holeError;
+    return el(
+        "p",
+        { class: "holes-say" },
+        `Holes: ${parts.join("; ")}. `,
+        hidden && el("strong", { class: "flag" }, "The pixels are closer, the holes are not."),
+    );
+}
+
+function speedupSentence(comparison) {
+    const { speedup, speedup_ci95: ci95, baseline } = comparison,
+        range = interval(ci95);
+    if (!isNumber(speedup) && !range) return null;
+    const value = isNumber(speedup)
+        ? `${number(speedup)} ×${range && ` (95 % ${range})`}`
+        : `${baseline} has no snapshot at this error (95 % ${range} ×)`;
+    return el("p", { class: "speedup" }, `Speed-up at equal error: ${value}.`);
+}
+
+function ratioScale() {
+    const values = comparisons.flatMap((c) => [c.ratio, ...(isInterval(c.ci95) ? c.ci95 : [])]).filter((v) => v > 0);
+    if (!values.length) return null;
+    const lo = Math.min(0.5, ...values) / 1.15,
+        hi = Math.max(2, ...values) * 1.15;
+    return { lo, hi, at: (v) => Math.log(clamp(v, lo, hi) / lo) / Math.log(hi / lo) };
+}
+
+const kForest = { width: 300, height: 34, margin: 14 };
+const forestX = (scale, value) => kForest.margin + scale.at(value) * (kForest.width - 2 * kForest.margin);
+
+function forestRow(comparison, scale) {
+    const x = (v) => forestX(scale, v).toFixed(1),
+        y = kForest.height / 2;
+    const root = svg("svg", {
+        class: `forest ${comparison.verdict ?? ""}`,
+        viewBox: `0 0 ${kForest.width} ${kForest.height}`,
+        role: "img",
+        "aria-label": `ratio ${number(comparison.ratio)}, 95 % interval ${interval(comparison.ci95)}`,
+    });
+    root.append(svg("line", { class: "one", x1: x(1), x2: x(1), y1: 0, y2: kForest.height }));
+    if (isInterval(comparison.ci95) && comparison.ci95[0] > 0)
+        root.append(
+            svg("line", { class: "whisker", x1: x(comparison.ci95[0]), x2: x(comparison.ci95[1]), y1: y, y2: y }),
+        );
+    if (comparison.ratio > 0) root.append(svg("circle", { cx: x(comparison.ratio), cy: y, r: 5 }));
+    return root;
+}
+
+/// Values 1, 2 and 5 times powers of ten within [lo, hi], thinned to at most `most`.
+function logTicks(lo, hi, most = 7) {
+    const ticks = [];
+    for (let e = Math.floor(Math.log10(lo)); e <= Math.ceil(Math.log10(hi)); ++e)
+        for (const m of [1, 2, 5]) if (m * 10 ** e >= lo && m * 10 ** e <= hi) ticks.push(m * 10 ** e);
+    return ticks.length <= most
+        ? ticks
+        : ticks.filter((t) => Math.abs(Math.log10(t) - Math.round(Math.log10(t))) < 1e-9);
+}
+
+function forestAxis(scale) {
+    const root = svg(
+        "svg",
+        { class: "forest axis", viewBox: `0 0 ${kForest.width} 32`, "aria-hidden": true },
+        svg("line", { class: "base", x1: kForest.margin, x2: kForest.width - kForest.margin, y1: 1, y2: 1 }),
+    );
+    for (const tick of logTicks(scale.lo, scale.hi)) {
+        const x = forestX(scale, tick).toFixed(1);
+        root.append(svg("line", { class: "base", x1: x, x2: x, y1: 1, y2: 5 }), svg("text", { x, y: 17 }, plain(tick)));
+    }
+    root.append(
+        svg("text", { class: "start", x: kForest.margin, y: 30 }, "← less error"),
+        svg("text", { class: "end", x: kForest.width - kForest.margin, y: 30 }, "more error →"),
+    );
+    return root;
+}
+
+function verdictSection() {
+    if (!comparisons.length)
+        return section(
+            "verdict",
+            "Verdict",
+            "No comparison: the experiment names no baseline or has one sampler only.",
+        );
+    const scale = ratioScale();
+    const rows = [];
+    for (const scene of new Set(comparisons.map((c) => c.scene))) {
+        rows.push(el("h3", {}, scene));
+        for (const comparison of comparisons.filter((c) => c.scene === scene)) {
+            const cell = cells.find((c) => comparisonsOf(c).includes(comparison));
+            rows.push(
+                el(
+                    "div",
+                    { class: "verdict-row" },
+                    el(
+                        "div",
+                        {},
+                        el("p", { class: "sentence" }, sentenceWithMarkedVerdict(comparison)),
+                        speedupSentence(comparison),
+                        cell && holeSentence(cell, baselineOf(cell)),
+                    ),
+                    scale && forestRow(comparison, scale),
+                ),
+            );
+        }
+    }
+    const one = scale ? `--one: ${forestX(scale, 1) / kForest.width}` : null;
+    return section(
+        "verdict",
+        "Verdict",
+        null,
+        el(
+            "div",
+            { class: "verdicts", style: one },
+            rows,
+            scale && el("div", { class: "verdict-row" }, el("span"), forestAxis(scale)),
+        ),
+        el(
+            "p",
+            { class: "note" },
+            `The ratio is E[${metricName(primaryMetric)}] of the sampler over that of the baseline at equal `,
+            "budget, with its 95 % interval; a verdict needs p ≤ 0.05 after Holm’s correction over all comparisons of the run.",
+        ),
+    );
+}

@@ -1,0 +1,407 @@
+// The linked viewer: a stage that flips in place, tiles side by side, two movable crops under each; one view for all.
+
+class Viewer {
+    constructor(group) {
+        this.group = group;
+        this.state = { zoom: 1, u: 0.5, v: 0.5, exposure: 0, error: false, worst: false, shown: 0 };
+        this.reference = this.comparableReference();
+        this.entries = this.makeEntries();
+        const first = this.entries[0].picture;
+        this.state.exposure = fittingExposure(this.reference ?? first);
+        this.aspect = first.width / first.height;
+        this.insets = this.defaultInsets(first);
+        this.element = this.build();
+        this.resize = new ResizeObserver(() => this.draw());
+        this.resize.observe(this.element);
+    }
+
+    static has(group) {
+        return group.cells.some((cell) => pictureIds(cell).mean !== undefined);
+    }
+
+    /// Errors per pixel need a reference of the images' own size.
+    comparableReference() {
+        const reference = picture(referenceId(this.group));
+        const sizes = this.group.cells.map((cell) => picture(pictureIds(cell).mean)).filter(Boolean);
+        return sizes.every((p) => p.width === reference?.width && p.height === reference?.height) ? reference : null;
+    }
+
+    /// What can be shown, in the order of the keys: reference, one replicate of each cell, mean of each cell.
+    makeEntries() {
+        const withImages = this.group.cells.filter((cell) => pictureIds(cell).mean !== undefined);
+        const entries = this.reference ? [{ title: "reference", picture: this.reference, kind: "reference" }] : [];
+        for (const cell of withImages) entries.push({ cell, kind: "replicate", title: cell.label });
+        for (const cell of withImages)
+            entries.push({
+                cell,
+                kind: "mean",
+                title: cell.label,
+                note: `mean of ${cell.replicates ?? "all"} runs`,
+                picture: picture(pictureIds(cell).mean),
+            });
+        entries.filter((entry) => entry.kind === "replicate").forEach((entry) => this.chooseReplicate(entry));
+        return entries;
+    }
+
+    chooseReplicate(entry) {
+        const ids = pictureIds(entry.cell),
+            which = this.state.worst ? "worst" : "median";
+        const replicate = ids[`${which}_replicate`];
+        const value = entry.cell.metrics?.[primaryMetric]?.values?.[replicate];
+        entry.picture = picture(ids[which]);
+        entry.note = `${which} run${isNumber(value) ? `, ${metricName(primaryMetric)} ${number(value)}` : ""}`;
+    }
+
+    /// Crops start where the last sampler is most too bright and most too dark, over an 8×8 division of the image.
+    defaultInsets(first) {
+        const judged = this.entries.filter((entry) => entry.kind === "replicate").at(-1)?.picture;
+        const size = 1 / 6,
+            at = (u, v) => ({ u: clamp(u, size / 2, 1 - size / 2), v: clamp(v, size / 2, 1 - size / 2), size });
+        if (!judged || !this.reference) return [at(0.3, 0.3), at(0.7, 0.7)];
+        const blocks = Array.from({ length: 64 }, (_, i) => ({ i, excess: 0 }));
+        for (let y = 0; y < first.height; ++y)
+            for (let x = 0; x < first.width; ++x) {
+                const block = blocks[Math.floor((8 * y) / first.height) * 8 + Math.floor((8 * x) / first.width)];
+                const p = 3 * (y * first.width + x) + 1;
+                block.excess += clamp(judged.rgb[p], 0, 10 * this.reference.rgb[p]) - this.reference.rgb[p];
+            }
+        blocks.sort((a, b) => a.excess - b.excess);
+        return [blocks.at(-1), blocks[0]].map(({ i }) => at(((i % 8) + 0.5) / 8, (Math.floor(i / 8) + 0.5) / 8));
+    }
+
+    build() {
+        this.stage = this.linkedCanvas("stage", () => this.entries[this.state.shown]);
+        this.stage.tabIndex = 0;
+        this.stage.setAttribute("role", "img");
+        this.stageTitle = el("p", { class: "stage-title", "aria-live": "polite" });
+        this.readout = el("p", { class: "readout" }, "\u00a0");
+        this.handles = this.insets.map((inset, i) => this.insetHandle(inset, i));
+        this.tiles = this.entries.map((entry, i) => this.tile(entry, i));
+        const columns = this.entries.filter((entry) => entry.kind !== "mean").length;
+        const legend = this.errorLegend();
+        const first = this.entries.findIndex((entry) => entry.kind === "mean");
+        const tiles = [...this.tiles.slice(0, first), this.reference ? legend : null, ...this.tiles.slice(first)];
+        return el(
+            "div",
+            { class: "viewer", id: `viewer-${this.group.id}` },
+            el(
+                "div",
+                { class: "stage-side" },
+                this.stageTitle,
+                el("div", { class: "stage-box", style: `aspect-ratio: ${this.aspect}` }, this.stage, this.handles),
+                this.readout,
+                this.controls(),
+            ),
+            el(
+                "div",
+                { class: "tiles", style: `grid-template-columns: repeat(${columns}, minmax(110px, 1fr))` },
+                tiles,
+            ),
+        );
+    }
+
+    controls() {
+        const { state } = this;
+        this.exposureValue = el("output");
+        this.exposure = el("input", {
+            type: "range",
+            class: "exposure",
+            min: -12,
+            max: 12,
+            step: 0.25,
+            "aria-label": "exposure in stops",
+            oninput: () => this.set({ exposure: Number(this.exposure.value) }),
+        });
+        this.errorBox = el("input", {
+            type: "checkbox",
+            class: "error-toggle",
+            disabled: !this.reference,
+            onchange: () => this.set({ error: this.errorBox.checked }),
+        });
+        this.worstBox = el("input", {
+            type: "checkbox",
+            class: "worst-toggle",
+            onchange: () => this.set({ worst: this.worstBox.checked }),
+        });
+        this.fitted = state.exposure;
+        return el(
+            "div",
+            { class: "controls" },
+            el("label", {}, "exposure ", this.exposure, this.exposureValue),
+            el("label", {}, this.errorBox, " relative error ", el("kbd", {}, "e")),
+            el("label", {}, this.worstBox, " worst run ", el("kbd", {}, "w")),
+            el("button", { type: "button", onclick: () => this.reset() }, "reset view ", el("kbd", {}, "0")),
+            el(
+                "p",
+                { class: "note" },
+                el("kbd", {}, "1"),
+                " … ",
+                el("kbd", {}, "9"),
+                " flip · drag to pan · ",
+                el("kbd", {}, "+"),
+                " ",
+                el("kbd", {}, "−"),
+                " or click, then wheel, to zoom · ",
+                el("kbd", {}, "["),
+                " ",
+                el("kbd", {}, "]"),
+                " exposure · drag the two frames by their corners, or focus them and use the arrows",
+            ),
+        );
+    }
+
+    errorLegend() {
+        return el(
+            "div",
+            { class: "tile error-legend" },
+            colourBar(
+                magma,
+                [0.01, 0.1, 1, 10].map(percent).map((text) => text.replace(".0", "")),
+                "relative error of a pixel",
+            ),
+            el(
+                "p",
+                {},
+                "√ of the mean over channels of (x − r)² ∕ (r² + 0.01): what relMSE averages, before the square.",
+            ),
+        );
+    }
+
+    tile(entry, index) {
+        const key = index < 9 ? String(index + 1) : null;
+        const label = el(
+            "button",
+            { type: "button", class: "tile-label", onclick: () => this.set({ shown: index }) },
+            key && el("kbd", {}, key),
+            " ",
+            entry.cell && samplerMark(entry.cell),
+            el("b", {}, entry.title),
+            el("span", { class: "ci tile-note" }),
+        );
+        const canvas = this.linkedCanvas("tile-image", () => entry);
+        canvas.style.aspectRatio = this.aspect;
+        canvas.setAttribute("aria-hidden", "true");
+        canvas.addEventListener("click", () => {
+            if (!this.dragged) this.set({ shown: index });
+        });
+        const crops = this.insets.map((_, i) =>
+            el("canvas", { class: `crop crop-${i}`, style: `aspect-ratio: ${this.aspect}`, "aria-hidden": true }),
+        );
+        return Object.assign(el("div", { class: "tile" }, label, canvas, el("div", { class: "crops" }, crops)), {
+            entry,
+            label,
+            canvas,
+            crops,
+        });
+    }
+
+    insetHandle(inset, index) {
+        const move = (du, dv) => {
+            inset.u = clamp(inset.u + du, inset.size / 2, 1 - inset.size / 2);
+            inset.v = clamp(inset.v + dv, inset.size / 2, 1 - inset.size / 2);
+            this.draw();
+        };
+        const handle = el("button", {
+            type: "button",
+            class: `inset-frame inset-${index}`,
+            "aria-label": `crop ${index + 1}: move with the arrow keys`,
+        });
+        handle.addEventListener("keydown", (e) => {
+            const step = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[e.key];
+            if (!step) return;
+            e.preventDefault();
+            e.stopPropagation();
+            move(step[0] / 64, step[1] / 64);
+        });
+        handle.addEventListener("pointerdown", (e) => {
+            e.stopPropagation();
+            handle.setPointerCapture(e.pointerId);
+            const dragging = (m) => {
+                const size = this.imageSize(this.stage.clientWidth, this.stage.clientHeight);
+                move(m.movementX / size.width, m.movementY / size.height);
+            };
+            handle.addEventListener("pointermove", dragging);
+            handle.addEventListener("pointerup", () => handle.removeEventListener("pointermove", dragging), {
+                once: true,
+            });
+        });
+        return handle;
+    }
+
+    /// A canvas whose drags and wheel move the common view.
+    linkedCanvas(name, entry) {
+        const canvas = el("canvas", { class: name });
+        canvas.addEventListener("pointerdown", (e) => {
+            canvas.setPointerCapture(e.pointerId);
+            this.dragged = false;
+            const dragging = (m) => {
+                if (Math.abs(m.movementX) + Math.abs(m.movementY) > 0) this.dragged = true;
+                const size = this.imageSize(canvas.clientWidth, canvas.clientHeight);
+                this.set({ u: this.state.u - m.movementX / size.width, v: this.state.v - m.movementY / size.height });
+            };
+            canvas.addEventListener("pointermove", dragging);
+            canvas.addEventListener("pointerup", () => canvas.removeEventListener("pointermove", dragging), {
+                once: true,
+            });
+        });
+        canvas.addEventListener(
+            "wheel",
+            (e) => {
+                if (document.activeElement !== canvas && !e.ctrlKey && !e.metaKey) return;
+                e.preventDefault();
+                this.zoomBy(Math.exp(-e.deltaY * 0.002), this.toImage(canvas, e));
+            },
+            { passive: false },
+        );
+        canvas.addEventListener("pointermove", (e) => this.describePixel(entry(), this.toImage(canvas, e)));
+        return canvas;
+    }
+
+    imageSize(width, height) {
+        const scale = this.state.zoom * Math.min(width, height * this.aspect);
+        return { width: scale, height: scale / this.aspect };
+    }
+
+    toImage(canvas, event) {
+        const size = this.imageSize(canvas.clientWidth, canvas.clientHeight);
+        return [
+            this.state.u + (event.offsetX - canvas.clientWidth / 2) / size.width,
+            this.state.v + (event.offsetY - canvas.clientHeight / 2) / size.height,
+        ];
+    }
+
+    zoomBy(factor, [u, v] = [this.state.u, this.state.v]) {
+        const zoom = clamp(this.state.zoom * factor, 1, 64),
+            kept = this.state.zoom / zoom;
+        this.set({ zoom, u: u + (this.state.u - u) * kept, v: v + (this.state.v - v) * kept });
+    }
+
+    reset() {
+        this.set({ zoom: 1, u: 0.5, v: 0.5, exposure: this.fitted, error: false });
+    }
+
+    set(change) {
+        Object.assign(this.state, change);
+        const half = 0.5 / this.state.zoom;
+        this.state.u = clamp(this.state.u, half, 1 - half);
+        this.state.v = clamp(this.state.v, half, 1 - half);
+        this.state.exposure = clamp(this.state.exposure, -12, 12);
+        if ("worst" in change)
+            this.entries.filter((entry) => entry.kind === "replicate").forEach((entry) => this.chooseReplicate(entry));
+        this.draw();
+    }
+
+    /// Keys that work anywhere on the page while this scene's viewer is the visible one.
+    key(e) {
+        const { state } = this;
+        const pan = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[e.key];
+        if (pan && document.activeElement === this.stage)
+            this.set({ u: state.u + (pan[0] * 0.1) / state.zoom, v: state.v + (pan[1] * 0.1) / state.zoom });
+        else if (/^[1-9]$/.test(e.key) && Number(e.key) <= this.entries.length) this.set({ shown: Number(e.key) - 1 });
+        else if (e.key === "e" && this.reference) this.set({ error: !state.error });
+        else if (e.key === "w") this.set({ worst: !state.worst });
+        else if (e.key === "0") this.reset();
+        else if (e.key === "+" || e.key === "=") this.zoomBy(1.5);
+        else if (e.key === "-") this.zoomBy(1 / 1.5);
+        else if (e.key === "[" || e.key === "]") this.set({ exposure: state.exposure + (e.key === "]" ? 0.5 : -0.5) });
+        else return false;
+        return true;
+    }
+
+    describePixel(entry, [u, v]) {
+        const image = entry.picture;
+        const x = Math.floor(u * image.width),
+            y = Math.floor(v * image.height);
+        if (x < 0 || y < 0 || x >= image.width || y >= image.height) return;
+        const i = y * image.width + x,
+            rgb = (p) => [0, 1, 2].map((c) => number(p.rgb[3 * i + c])).join(", ");
+        const against =
+            this.reference && entry.kind !== "reference"
+                ? ` · reference ${rgb(this.reference)} · relative error ${percent(image.relativeError(i, this.reference))}`
+                : "";
+        this.readout.textContent = `pixel ${x}, ${y}: ${rgb(image)}${against}`;
+    }
+
+    paint(canvas, image, view, entry) {
+        const context = fitCanvas(canvas);
+        const error = this.state.error && entry.kind !== "reference" ? this.reference : null;
+        const source = image.shown(this.state.exposure, error);
+        const scale = view.zoom * Math.min(canvas.width, canvas.height * this.aspect);
+        const width = scale,
+            height = scale / this.aspect;
+        context.fillStyle = "#000";
+        context.fillRect(0, 0, canvas.width, canvas.height);
+        context.imageSmoothingEnabled = width < image.width;
+        context.imageSmoothingQuality = "high";
+        context.drawImage(
+            source,
+            canvas.width / 2 - view.u * width,
+            canvas.height / 2 - view.v * height,
+            width,
+            height,
+        );
+    }
+
+    draw() {
+        const { state } = this;
+        this.exposure.value = state.exposure;
+        this.exposureValue.textContent = `${state.exposure > 0 ? "+" : ""}${plain(state.exposure)} EV`;
+        this.errorBox.checked = state.error;
+        this.worstBox.checked = state.worst;
+        if (!this.stage.clientWidth) return;
+        const shown = this.entries[state.shown];
+        this.paint(this.stage, shown.picture, state, shown);
+        const caption = `${shown.title}${shown.note ? `, ${shown.note}` : ""}`;
+        this.stageTitle.replaceChildren(el("kbd", {}, state.shown + 1), ` ${caption}`);
+        this.stage.setAttribute("aria-label", caption);
+        this.tiles.forEach((tile, i) => {
+            this.paint(tile.canvas, tile.entry.picture, state, tile.entry);
+            tile.crops.forEach((crop, k) =>
+                this.paint(crop, tile.entry.picture, { zoom: 1 / this.insets[k].size, ...this.insets[k] }, tile.entry),
+            );
+            tile.label.querySelector(".tile-note").textContent = tile.entry.note ?? "";
+            tile.label.setAttribute("aria-pressed", i === state.shown);
+        });
+        const size = this.imageSize(this.stage.clientWidth, this.stage.clientHeight);
+        this.handles.forEach((handle, k) => {
+            const inset = this.insets[k];
+            Object.assign(handle.style, {
+                width: `${inset.size * size.width}px`,
+                height: `${inset.size * size.height}px`,
+                left: `${this.stage.clientWidth / 2 + (inset.u - inset.size / 2 - state.u) * size.width}px`,
+                top: `${this.stage.clientHeight / 2 + (inset.v - inset.size / 2 - state.v) * size.height}px`,
+            });
+        });
+    }
+}
+
+const viewers = [];
+
+/// The viewer nearest the middle of the window takes the keys.
+function activeViewer() {
+    const distance = (viewer) => {
+        const box = viewer.element.getBoundingClientRect();
+        return Math.abs((box.top + box.bottom) / 2 - innerHeight / 2);
+    };
+    return [...viewers].sort((a, b) => distance(a) - distance(b))[0];
+}
+
+document.addEventListener("keydown", (e) => {
+    const typing =
+        /^(TEXTAREA|SELECT)$/.test(e.target.tagName) || (e.target.tagName === "INPUT" && e.target.type === "text");
+    if (typing || e.ctrlKey || e.metaKey || e.altKey) return;
+    if (activeViewer()?.key(e)) e.preventDefault();
+});
+
+function imagesSection() {
+    viewers.splice(0).forEach((viewer) => viewer.resize.disconnect());
+    for (const group of groups) if (Viewer.has(group)) viewers.push(new Viewer(group));
+    if (!viewers.length) return null;
+    return section(
+        "images",
+        "Images",
+        "Reference, one run, and the mean over runs of each sampler; zoom, pan and exposure are common to all." +
+            (data.shrink > 1 ? ` Shown at 1∕${data.shrink} of their size to keep the page small.` : ""),
+        viewers.map((viewer) => el("div", { class: "group" }, el("h3", {}, viewer.group.title), viewer.element)),
+    );
+}

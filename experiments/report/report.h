@@ -1,0 +1,19 @@
+#pragma once
+// The report of a run: one HTML file that holds everything it shows and asks nobody for anything.
+
+#include <filesystem>
+
+namespace ulam {
+
+/// Writes RUN_DIR/report.html from the other files of RUN_DIR (contract: "What a run leaves"). Needed is summary.json;
+/// experiment.json, resolved.json, provenance.json, the cells' r000/result.json and all images are shown where they
+/// exist. Of each cell the page holds the mean over replicates, the median and the worst replicate, and the reference,
+/// at 4 bytes a pixel; where that is more than kReportImageBytes, all images are halved until it is not.
+/// Fails with InputMissing without summary.json, InvalidConfig where a file is damaged or the images of a cell differ
+/// in size, CannotWrite where report.html cannot be written.
+void writeReport(const std::filesystem::path& runDir);
+
+/// What the images of a page may take, in bytes of base64 text.
+inline constexpr double kReportImageBytes = 24e6;
+
+}  // namespace ulam

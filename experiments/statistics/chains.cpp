@@ -1,0 +1,184 @@
+#include "experiments/statistics/chains.h"
+
+#include <algorithm>
+#include <boost/math/distributions/normal.hpp>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "core/base/error.h"
+#include "experiments/statistics/moments.h"
+
+namespace ulam::statistics {
+namespace {
+
+void requireTraces(std::span<const Trace> chains, std::size_t shortest) {
+    if (chains.empty()) fail(ExitCode::InvalidConfig, "chain diagnostics: expected at least one trace, found none");
+    for (const Trace& chain : chains) {
+        if (chain.size() == chains.front().size() && chain.size() >= shortest) continue;
+        fail(ExitCode::InvalidConfig,
+             "chain diagnostics: expected traces of one length of at least {}, found {} and {}", shortest,
+             chains.front().size(), chain.size());
+    }
+}
+
+/// Means, variances and autocovariances (divided by n at every lag) of chains of equal length.
+class Autocovariance {
+public:
+    explicit Autocovariance(std::span<const std::span<const double>> chains) : length_(chains.front().size()) {
+        for (std::span<const double> chain : chains) {
+            Trace centred(chain.begin(), chain.end());
+            means_.push_back(mean(chain));
+            for (double& x : centred) x -= means_.back();
+            within_ += variance(chain) / static_cast<double>(chains.size());
+            centred_.push_back(std::move(centred));
+        }
+        const auto n = static_cast<double>(length_);
+        total_ = within_ * (n - 1) / n + (chains.size() > 1 ? variance(means_) : 0);
+    }
+
+    std::size_t length() const { return length_; }
+    bool isConstant() const { return total_ == 0; }
+
+    double correlation(std::size_t lag) const {
+        if (lag == 0) return 1;
+        double sum = 0;
+        for (const Trace& chain : centred_) {
+            for (std::size_t i = lag; i < length_; ++i) sum += chain[i] * chain[i - lag];
+        }
+        const auto n = static_cast<double>(length_);
+        const double covariance = sum / (n * static_cast<double>(centred_.size()));
+        return 1 - (within_ * (n - 1) / n - covariance) / total_;
+    }
+
+private:
+    std::size_t length_;
+    std::vector<Trace> centred_;
+    std::vector<double> means_;
+    double within_ = 0;
+    double total_ = 0;
+};
+
+double integratedTime(std::span<const std::span<const double>> chains) {
+    const Autocovariance autocovariance(chains);
+    const std::size_t n = autocovariance.length();
+    const auto draws = static_cast<double>(n * chains.size());
+    if (autocovariance.isConstant()) return draws;
+    double sum = 0;
+    double previous = std::numeric_limits<double>::infinity();
+    for (std::size_t lag = 0; lag + 1 < n; lag += 2) {
+        const double pair = autocovariance.correlation(lag) + autocovariance.correlation(lag + 1);
+        if (pair <= 0) break;
+        previous = std::min(previous, pair);
+        sum += previous;
+    }
+    return std::max(2 * sum - 1, 1 / std::log10(draws));
+}
+
+/// Each chain cut into its first and second half; the middle value of an odd length is left out.
+std::vector<Trace> splitInHalves(std::span<const Trace> chains) {
+    std::vector<Trace> halves;
+    for (const Trace& chain : chains) {
+        const auto half = static_cast<std::ptrdiff_t>(chain.size() / 2);
+        halves.emplace_back(chain.begin(), chain.begin() + half);
+        halves.emplace_back(chain.end() - half, chain.end());
+    }
+    return halves;
+}
+
+/// Normal scores of the ranks over all chains together (Blom's 3/8), ties at their average rank.
+std::vector<Trace> rankNormalised(std::vector<Trace> chains) {
+    std::vector<double*> order;
+    for (Trace& chain : chains) {
+        for (double& x : chain) order.push_back(&x);
+    }
+    std::ranges::sort(order, {}, [](const double* x) { return *x; });
+    const boost::math::normal normal;
+    const auto count = static_cast<double>(order.size());
+    for (std::size_t first = 0; first < order.size();) {
+        const double value = *order[first];
+        std::size_t last = first;
+        while (last < order.size() && *order[last] == value) ++last;
+        const double rank = static_cast<double>(first + last + 1) / 2;
+        const double score = boost::math::quantile(normal, (rank - 0.375) / (count + 0.25));
+        for (; first < last; ++first) *order[first] = score;
+    }
+    return chains;
+}
+
+/// Distances from the median over all chains together: sees chains that differ in spread only.
+std::vector<Trace> folded(std::vector<Trace> chains) {
+    std::vector<double> all;
+    for (const Trace& chain : chains) all.insert(all.end(), chain.begin(), chain.end());
+    const double median = quantile(all, 0.5);
+    for (Trace& chain : chains) {
+        for (double& x : chain) x = std::abs(x - median);
+    }
+    return chains;
+}
+
+/// √(base + B / W) with the degenerate cases in place.
+double scaleReduction(double base, double between, double within) {
+    if (between == 0) return 1;
+    return within == 0 ? std::numeric_limits<double>::infinity() : std::sqrt(base + between / within);
+}
+
+double classicalRhat(std::span<const Trace> chains) {
+    std::vector<double> means;
+    double within = 0;
+    for (const Trace& chain : chains) {
+        means.push_back(mean(chain));
+        within += variance(chain) / static_cast<double>(chains.size());
+    }
+    const auto n = static_cast<double>(chains.front().size());
+    return scaleReduction((n - 1) / n, variance(means), within);
+}
+
+}  // namespace
+
+double autocorrelationTime(std::span<const double> trace) {
+    if (trace.size() < 4) {
+        fail(ExitCode::InvalidConfig, "autocorrelation time: expected a trace of at least 4 values, found {}",
+             trace.size());
+    }
+    return integratedTime({&trace, 1});
+}
+
+double effectiveSampleSize(std::span<const Trace> chains) {
+    requireTraces(chains, 4);
+    const std::vector<std::span<const double>> views(chains.begin(), chains.end());
+    return static_cast<double>(chains.size() * chains.front().size()) / integratedTime(views);
+}
+
+double splitRhat(std::span<const Trace> chains) {
+    requireTraces(chains, 4);
+    const std::vector<Trace> halves = splitInHalves(chains);
+    return std::max(classicalRhat(rankNormalised(halves)), classicalRhat(rankNormalised(folded(halves))));
+}
+
+double nestedRhat(std::span<const Trace> chains, std::size_t chainsPerSuperchain) {
+    requireTraces(chains, 1);
+    if (chainsPerSuperchain == 0 || chains.size() % chainsPerSuperchain != 0 ||
+        chains.size() / chainsPerSuperchain < 2) {
+        fail(ExitCode::InvalidConfig, "nested R-hat: expected at least two super-chains of {} chains, found {} chains",
+             chainsPerSuperchain, chains.size());
+    }
+    if (chainsPerSuperchain == 1 && chains.front().size() == 1) {
+        fail(ExitCode::InvalidConfig, "nested R-hat: one chain of length one has no variance inside its super-chain");
+    }
+    std::vector<double> superMeans;
+    double within = 0;
+    const auto superchains = static_cast<double>(chains.size() / chainsPerSuperchain);
+    for (std::size_t first = 0; first < chains.size(); first += chainsPerSuperchain) {
+        std::vector<double> means;
+        for (const Trace& chain : chains.subspan(first, chainsPerSuperchain)) {
+            means.push_back(mean(chain));
+            if (chain.size() > 1) within += variance(chain) / static_cast<double>(chains.size());
+        }
+        if (means.size() > 1) within += variance(means) / superchains;
+        superMeans.push_back(mean(means));
+    }
+    return scaleReduction(1, variance(superMeans), within);
+}
+
+}  // namespace ulam::statistics

@@ -1,0 +1,31 @@
+#pragma once
+// Occupancy of a scene's features (holes of a grid, a door gap): the share of a run's mutations, or of its weight,
+// spent in each. Wrong shares show trapping that a noise-free image hides.
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "experiments/statistics/intervals.h"
+#include "experiments/statistics/welch.h"
+
+namespace ulam::statistics {
+
+struct FeatureShare {
+    double share = 0;              // mean over replicates
+    std::optional<Interval> ci95;  // Student's t over replicates, cut to [0, 1]; nothing below two
+    std::optional<double> truth;
+    double p = 1;          // share equals truth; 1 without truth or below two replicates
+    double pAdjusted = 1;  // Holm over the features
+};
+
+/// shares[replicate][feature]. `truth` is empty or has one entry per feature: exact (MeanEstimate{share}) or a
+/// reference with its own variance. Throws where the lengths differ.
+///
+/// A feature that no replicate visited has no variance for a t-test. Its p is min(1, 2 (1 − w)^R) for truth w and R
+/// replicates: a variable in [0, 1] with mean w vanishes with probability at most 1 − w, and the two pays for having
+/// two tests. The w of a reference is lowered by two standard errors.
+std::vector<FeatureShare> featureShares(std::span<const std::vector<double>> shares,
+                                        std::span<const MeanEstimate> truth);
+
+}  // namespace ulam::statistics

@@ -1,0 +1,29 @@
+#include "experiments/statistics/holm.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace ulam::statistics {
+
+std::vector<double> holmAdjusted(std::span<const double> p) {
+    std::vector<std::size_t> order(p.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) { return p[i] < p[j]; });
+    std::vector<double> adjusted(p.size());
+    double largest = 0;
+    for (std::size_t rank = 0; rank < order.size(); ++rank) {
+        largest = std::max(largest, static_cast<double>(order.size() - rank) * p[order[rank]]);
+        adjusted[order[rank]] = std::min(1.0, largest);
+    }
+    return adjusted;
+}
+
+std::vector<double> sidakAdjusted(std::span<const double> p) {
+    std::vector<double> adjusted;
+    adjusted.reserve(p.size());
+    for (double x : p) adjusted.push_back(-std::expm1(static_cast<double>(p.size()) * std::log1p(-x)));
+    return adjusted;
+}
+
+}  // namespace ulam::statistics

@@ -1,0 +1,62 @@
+#include "experiments/verify/image_audit.h"
+
+#include "experiments/statistics/moments.h"
+
+namespace ulam::verify {
+namespace {
+
+constexpr int kTile = 8;  // pixels; the audit scenes' films are small
+
+std::vector<double> tileMeans(const Image& image) {
+    std::vector<double> means;
+    for (int y0 = 0; y0 < image.height; y0 += kTile)
+        for (int x0 = 0; x0 < image.width; x0 += kTile) {
+            Spectrum sum(0.0);
+            for (int y = y0; y < y0 + kTile; ++y)
+                for (int x = x0; x < x0 + kTile; ++x) sum += Spectrum(image.at(x, y));
+            sum /= kTile * kTile;
+            means.insert(means.end(), {sum.x, sum.y, sum.z});
+        }
+    return means;
+}
+
+}  // namespace
+
+TiledEstimate renderTiled(const audit::AuditScene& scene, const Json& sampler, const Budget& budget, int runs,
+                          uint64_t seed, uint64_t cell, int threads) {
+    TiledEstimate estimate;
+    std::vector<std::vector<double>> tiles;
+    std::vector<double> energy;
+    const auto made = Registry<Sampler>::instance().create(JsonNode(sampler));
+    for (int r = 0; r < runs; ++r) {
+        RenderOptions options;
+        options.budget = budget;
+        options.key = makeKey(seed, cell, uint64_t(r));
+        options.threads = threads;
+        const RenderResult result = render(scene.scene, *made, options);
+        const std::vector<double> means = tileMeans(result.image);
+        tiles.resize(means.size());
+        double sum = 0;
+        for (size_t i = 0; i < means.size(); ++i) tiles[i].push_back(means[i]);
+        for (size_t i = 0; i < means.size(); i += 3) sum += luminance(Spectrum(means[i], means[i + 1], means[i + 2]));
+        energy.push_back(3 * sum / double(means.size()));
+        estimate.biasLedger = result.statistics.biasLedger;
+    }
+    for (const auto& values : tiles) estimate.tiles.push_back(statistics::estimateMean(values));
+    estimate.energy = statistics::estimateMean(energy);
+    return estimate;
+}
+
+ImageComparison compare(std::string place, const TiledEstimate& runs, const TiledEstimate& reference) {
+    ImageComparison c;
+    c.place = std::move(place);
+    c.p = statistics::welchPValues(runs.tiles, reference.tiles);
+    const auto &a = runs.energy, &b = reference.energy;
+    const double degrees = statistics::welchDegrees(a.varianceOfMean, a.degrees, b.varianceOfMean, b.degrees);
+    c.energyShift = a.mean / b.mean - 1;
+    c.energyWidth = statistics::studentQuantile(degrees, 1 - (1 - kEnergyConfidence) / 2) *
+                    std::sqrt(a.varianceOfMean + b.varianceOfMean) / b.mean;
+    return c;
+}
+
+}  // namespace ulam::verify

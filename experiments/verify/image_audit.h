@@ -1,0 +1,34 @@
+#pragma once
+// Audit level L5: images. Independent runs of a sampler against bidirectional path tracing: Welch's t for every tile
+// and channel, corrected by Holm, and the interval of the total energy.
+
+#include "core/mcmc/audit/scenes.h"
+#include "core/render/driver.h"
+#include "experiments/statistics/welch.h"
+
+namespace ulam::verify {
+
+/// Level of the tile tests of one subject, and confidence of the energy interval.
+inline constexpr double kTileLevel = 1e-5, kEnergyConfidence = 0.99999;
+
+/// Means over independent runs.
+struct TiledEstimate {
+    std::vector<statistics::MeanEstimate> tiles;  ///< tile by tile, three channels each
+    statistics::MeanEstimate energy;              ///< mean luminance
+    std::vector<std::string> biasLedger;          ///< of the runs
+};
+
+/// Independent runs of a sampler, each with the budget; `seed` and `cell` choose their random numbers.
+TiledEstimate renderTiled(const audit::AuditScene& scene, const Json& sampler, const Budget& budget, int runs,
+                          uint64_t seed, uint64_t cell, int threads);
+
+struct ImageComparison {
+    std::string place;       ///< for messages
+    std::vector<double> p;   ///< of every tile and channel, not adjusted
+    double energyShift = 0;  ///< relative to the reference
+    double energyWidth = 0;  ///< half of the interval's width, relative to the reference
+    bool energyHolds() const { return std::abs(energyShift) <= energyWidth; }
+};
+ImageComparison compare(std::string place, const TiledEstimate& runs, const TiledEstimate& reference);
+
+}  // namespace ulam::verify

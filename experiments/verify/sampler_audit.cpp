@@ -1,0 +1,72 @@
+#include "experiments/verify/sampler_audit.h"
+
+#include <chrono>
+
+#include "core/base/error.h"
+
+namespace ulam::verify {
+namespace {
+
+// Runs of a twentieth of the work that say how much is needed: samplers differ widely in variance.
+constexpr int kPilotRuns = 12;
+constexpr double kPilotShare = 0.05, kMostGrowth = 400, kSafety = 1.6;
+
+Budget scaled(const Budget& budget, double factor) {
+    Budget b;
+    if (budget.spp) b.spp = std::max(1.0, *budget.spp * factor);
+    if (budget.mutations) b.mutations = std::max(1.0, *budget.mutations * factor);
+    return b;
+}
+
+/// Adds a comparison, or says why there is none.
+std::string judge(const std::string& sampler, const audit::AuditScene& scene, const AuditSettings& settings,
+                  References& references, std::vector<ImageComparison>& comparisons) {
+    const Work& work = settings.work;
+    const TiledEstimate& reference = references(scene);
+    Json config = samplerConfig(sampler, scene);
+    const bool chains = Registry<Sampler>::instance().create(JsonNode(config))->isChainSampler();
+    Budget budget;
+    (chains ? budget.mutations : budget.spp) = chains ? work.pathMutations : work.samplesPerPixel;
+    const auto render = [&](double factor, int runs, const char* part) {
+        if (chains) config["bootstrap"] = std::llround(std::max(1000.0, work.bootstrap * factor));
+        return renderTiled(scene, config, scaled(budget, factor), runs, settings.seed,
+                           cellOf(sampler + scene.name + part), settings.threads);
+    };
+    TiledEstimate pilot;
+    try {
+        pilot = render(kPilotShare, kPilotRuns, " pilot");
+    } catch (const Error& error) {
+        // A sampler may need what an audit scene does not have.
+        if (error.code() == ExitCode::InvalidConfig) return error.what();
+        throw;
+    }
+    if (!pilot.biasLedger.empty()) return pilot.biasLedger.front();
+    // Half of the interval's square is left to the reference.
+    const double found = compare(scene.name, pilot, reference).energyWidth;
+    const double factor = kPilotShare * kPilotRuns / work.runs * kSafety * std::pow(found / work.energyWidth, 2) * 2;
+    comparisons.push_back(
+        compare(scene.name, render(std::clamp(factor, kPilotShare, kMostGrowth), work.runs, ""), reference));
+    return {};
+}
+
+}  // namespace
+
+SubjectReport auditSampler(const std::string& sampler, const AuditSettings& settings, References& references) {
+    const auto start = std::chrono::steady_clock::now();
+    const Work& work = settings.work;
+    SubjectReport report{.kind = "sampler", .name = sampler};
+    std::vector<ImageComparison> comparisons;
+    std::vector<std::string> notJudged;
+    for (const auto& scene : audit::auditScenes()) {
+        const std::string why = judge(sampler, *scene, settings, references, comparisons);
+        if (!why.empty()) notJudged.push_back(fmt::format("not judged in {}: {}", scene->name, why));
+    }
+    Finding finding = judgeImages(comparisons, work);
+    if (comparisons.empty()) finding.outcome = Outcome::NotAudited, finding.summary = "no audit scene suits it";
+    finding.details.insert(finding.details.end(), notJudged.begin(), notJudged.end());
+    finding.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    report.findings.push_back(std::move(finding));
+    return report;
+}
+
+}  // namespace ulam::verify

@@ -1,0 +1,91 @@
+#include "experiments/verify/work.h"
+
+#include "experiments/statistics/holm.h"
+
+namespace ulam::verify {
+
+Work quickWork() {
+    Work w;
+    w.seedSamples = 10'000, w.states = 1000;
+    w.structure = 10'000, w.balance = 20'000, w.jacobian = 2500;
+    w.starts = 80'000, w.ranks = 20'000;
+    w.runs = 32;
+    w.bootstrap = 20'000, w.pathMutations = 64'000, w.primaryMutations = 16'384, w.samplesPerPixel = 24;
+    w.energyWidth = 0.005;
+    w.aloneImages = {"specular", "outdoor"}, w.mixedImages = {"specular"};
+    return w;
+}
+
+Work fullWork() {
+    Work w = quickWork();
+    w.seedSamples *= 20, w.states *= 10;
+    w.structure *= 100, w.balance *= 50, w.jacobian *= 20;
+    w.starts *= 20, w.ranks *= 20;
+    w.bootstrap *= 25, w.pathMutations *= 25, w.primaryMutations *= 25, w.samplesPerPixel *= 25;
+    w.energyWidth = 0.001;
+    w.aloneImages = w.mixedImages = {"diffuse", "specular", "outdoor"};
+    return w;
+}
+
+uint64_t cellOf(std::string_view name) {
+    uint64_t hash = 0xcbf29ce484222325ull;  // FNV-1a
+    for (const char c : name) hash = (hash ^ uint8_t(c)) * 0x100000001b3ull;
+    return hash;
+}
+
+const TiledEstimate& References::operator()(const audit::AuditScene& scene) {
+    const auto place = made_.find(scene.name);
+    if (place != made_.end()) return place->second;
+    Budget budget;
+    budget.spp = work_.samplesPerPixel;
+    return made_[scene.name] = renderTiled(scene, samplerConfig("bdpt", scene), budget, work_.runs, seed_,
+                                           cellOf("reference " + scene.name), threads_);
+}
+
+Json samplerConfig(const std::string& sampler, const audit::AuditScene& scene) {
+    const auto& entry = Registry<Sampler>::instance().find(sampler, JsonNode());
+    Json config = {{"type", sampler}};
+    const auto has = [&](const char* parameter) {
+        return std::any_of(entry.parameters.begin(), entry.parameters.end(),
+                           [&](const ParameterInfo& p) { return p.name == parameter; });
+    };
+    if (has("max_depth")) config["max_depth"] = scene.limits.maxDepth;
+    if (has("rr_depth")) config["rr_depth"] = scene.limits.rrDepth;
+    return config;
+}
+
+Finding judgeImages(const std::vector<ImageComparison>& comparisons, const Work& work) {
+    Finding finding{.level = "L5", .check = "images"};
+    std::vector<double> all;
+    for (const ImageComparison& c : comparisons) all.insert(all.end(), c.p.begin(), c.p.end());
+    const std::vector<double> adjusted = statistics::holmAdjusted(all);
+    double smallest = 1, shift = 0, width = 0;
+    size_t next = 0;
+    for (const ImageComparison& c : comparisons) {
+        size_t rejected = 0;
+        double own = 1;
+        for (size_t i = 0; i < c.p.size(); ++i, ++next)
+            own = std::min(own, adjusted[next]), rejected += adjusted[next] < kTileLevel;
+        if (rejected > 0)
+            finding.details.push_back(fmt::format("{}: {} of {} tiles and channels differ, smallest adjusted p {:.3g}",
+                                                  c.place, rejected, c.p.size(), own));
+        if (!c.energyHolds())
+            finding.details.push_back(fmt::format("{}: energy differs by {:+.3f} % ± {:.3f} %", c.place,
+                                                  100 * c.energyShift, 100 * c.energyWidth));
+        if (!(c.energyWidth <= work.energyWidth))
+            finding.details.push_back(fmt::format("{}: the energy interval ± {:.3f} % is wider than ± {:.3f} %",
+                                                  c.place, 100 * c.energyWidth, 100 * work.energyWidth));
+        smallest = std::min(smallest, own);
+        if (std::abs(c.energyShift) > std::abs(shift)) shift = c.energyShift;
+        width = std::max(width, c.energyWidth);
+        finding.numbers[c.place] = {
+            {"smallest_adjusted_p", own}, {"energy_shift", c.energyShift}, {"energy_half_width", c.energyWidth}};
+    }
+    finding.outcome = finding.details.empty() ? Outcome::Passed : Outcome::Rejected;
+    finding.summary =
+        fmt::format("{} comparisons of {} runs, smallest adjusted p {:.2g}, energy within {:+.2f} % (± {:.2f} %)",
+                    comparisons.size(), work.runs, smallest, 100 * shift, 100 * width);
+    return finding;
+}
+
+}  // namespace ulam::verify

@@ -1,0 +1,56 @@
+#pragma once
+// How much the audit does, and what its parts share.
+
+#include <map>
+#include <string_view>
+
+#include "experiments/verify/image_audit.h"
+#include "experiments/verify/report.h"
+
+namespace ulam::verify {
+
+struct Work {
+    uint64_t seedSamples;                   ///< bootstrap samples that states are looked for in, each scene
+    size_t states;                          ///< kept of them
+    uint64_t structure, balance, jacobian;  ///< trials of L0 and L1, each scene
+    uint64_t starts;  ///< bootstrap samples of the weighted identities, each scene and mix; a tenth of it where a step
+                      ///< is a whole sample
+    uint64_t ranks;   ///< chains of the rank test
+    int runs;         ///< of L5
+    double bootstrap, pathMutations, primaryMutations, samplesPerPixel;  ///< each run
+    double energyWidth;                                 ///< largest half width of the energy interval, relative
+    std::vector<std::string> aloneImages, mixedImages;  ///< scenes of L5
+};
+Work quickWork();
+Work fullWork();
+
+struct AuditSettings {
+    Work work;
+    uint64_t seed;
+    int threads;
+    size_t subjects;  ///< that share the suite's level
+};
+
+/// Chooses the random numbers of a part of the audit by its name.
+uint64_t cellOf(std::string_view name);
+
+/// Images by bidirectional path tracing, made when they are asked for first.
+class References {
+public:
+    References(const Work& work, uint64_t seed, int threads) : work_(work), seed_(seed), threads_(threads) {}
+    const TiledEstimate& operator()(const audit::AuditScene& scene);
+
+private:
+    Work work_;
+    uint64_t seed_;
+    int threads_;
+    std::map<std::string, TiledEstimate> made_;
+};
+
+/// Parameters that every sampler shares: how long the audit scenes' paths get.
+Json samplerConfig(const std::string& sampler, const audit::AuditScene& scene);
+
+/// The finding of one subject's comparisons: Holm over all tiles, and every energy interval.
+Finding judgeImages(const std::vector<ImageComparison>& comparisons, const Work& work);
+
+}  // namespace ulam::verify

@@ -1,0 +1,52 @@
+// kelemen_step: every number moves by ±s2·exp(−log(s2/s1)·ξ), small steps being the likelier (Kelemen et al. 2002, §3.2).
+
+#include "core/mcmc/small_steps.h"
+
+namespace ulam {
+namespace {
+
+class KelemenStep : public Mutation {
+public:
+    struct Parameters {
+        double smallest = 1.0 / 1024, largest = 1.0 / 64;
+        template <class V>
+        void describe(V& v) {
+            v("smallest", smallest, {.help = "smallest step s1 of a number", .min = 0, .max = 0.5, .minExclusive = true});
+            v("largest", largest, {.help = "largest step s2 of a number", .min = 0, .max = 0.5, .minExclusive = true});
+        }
+    };
+    explicit KelemenStep(const Parameters& p) : parameters_(p), logRatio_(std::log(p.largest / p.smallest)) {
+        if (!(p.smallest < p.largest)) fail(ExitCode::InvalidConfig, "kelemen_step: smallest ({}) must be below largest ({})", p.smallest, p.largest);
+    }
+
+    Space space() const override { return Space::Primary; }
+
+    Proposal propose(const Sample& x, StepContext& context) const override {
+        Proposal p;
+        moveNumbers(x.u, p.y.u, context.random, [this](double u, Random& random) {
+            double xi = random() * 2;
+            const double sign = xi < 1 ? 1 : -1;
+            if (xi >= 1) xi -= 1;
+            return wrapped(u, sign * parameters_.largest * std::exp(-logRatio_ * xi));
+        });
+        return p;
+    }
+
+    std::optional<double> logDensity(const Sample& from, const Sample& to, StepContext&) const override {
+        return logMoves(from.u, to.u, [this](double d) {
+            d = std::abs(d);
+            // Wrapping rounds to the numbers' last place; the support is taken that much wider.
+            if (d < parameters_.smallest - 1e-12 || d > parameters_.largest + 1e-12) return -std::numeric_limits<double>::infinity();
+            return -std::log(2 * d * logRatio_);
+        });
+    }
+
+private:
+    Parameters parameters_;
+    double logRatio_;
+};
+
+ULAM_REGISTER_MUTATION(KelemenStep, "kelemen_step", "small steps of all primary numbers, sizes distributed as 1/s");
+
+}  // namespace
+}  // namespace ulam

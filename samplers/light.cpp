@@ -1,0 +1,50 @@
+// light: particle tracing. Walks start on the lights and every vertex is joined to the lens. Light that reaches the
+// camera by a mirror or glass it sees directly, and lights that it sees directly, are shown only where a vertex can be
+// joined to the lens; the run says so.
+
+#include "core/render/independent_run.h"
+
+namespace ulam {
+namespace {
+
+class LightTracer : public Sampler {
+public:
+    struct Parameters {
+        PathLimits limits;
+        template <class V>
+        void describe(V& v) {
+            limits.describe(v);
+        }
+    };
+    explicit LightTracer(const Parameters& p) : parameters_(p) {}
+
+    std::unique_ptr<SamplerRun> start(const RunContext& context) const override {
+        BidirectionalOptions options;
+        options.limits = parameters_.limits;
+        options.techniques = {.hitLight = false, .nextEvent = false, .connect = false, .lightImage = true};
+        return std::make_unique<LightRun>(context, options);
+    }
+
+private:
+    class LightRun : public IndependentRun {
+    public:
+        LightRun(const RunContext& context, const BidirectionalOptions& options)
+            : IndependentRun(context, [&] { return makeBidirectionalSource(context.scene, options); }) {
+            for (const Material& m : context.scene.materials) specular_ = specular_ || m.hasDelta();
+        }
+        void report(uint64_t units, RenderStatistics& statistics) const override {
+            IndependentRun::report(units, statistics);
+            if (specular_) statistics.biasLedger.push_back("particle tracing cannot join mirrors and glass to the lens: what the camera sees directly in them is black");
+        }
+
+    private:
+        bool specular_ = false;
+    };
+
+    Parameters parameters_;
+};
+
+ULAM_REGISTER_SAMPLER(LightTracer, "light", "particle tracing from the lights, every vertex joined to the lens");
+
+}  // namespace
+}  // namespace ulam

@@ -1,0 +1,36 @@
+// path: path tracing with next-event estimation and multiple importance sampling.
+
+#include "core/render/independent_run.h"
+
+namespace ulam {
+namespace {
+
+class PathTracer : public Sampler {
+public:
+    struct Parameters {
+        PathLimits limits;
+        std::string heuristic = "balance";
+        template <class V>
+        void describe(V& v) {
+            limits.describe(v);
+            v("heuristic", heuristic, {.help = "how hits of the light are weighted against next-event estimation", .choices = {"balance", "power"}});
+        }
+    };
+    explicit PathTracer(const Parameters& p) : parameters_(p) {}
+
+    std::unique_ptr<SamplerRun> start(const RunContext& context) const override {
+        BidirectionalOptions options;
+        options.limits = parameters_.limits;
+        options.heuristic = parameters_.heuristic == "power" ? Heuristic::Power : Heuristic::Balance;
+        options.techniques = {.hitLight = true, .nextEvent = true, .connect = false, .lightImage = false};
+        return std::make_unique<IndependentRun>(context, [&] { return makeBidirectionalSource(context.scene, options); });
+    }
+
+private:
+    Parameters parameters_;
+};
+
+ULAM_REGISTER_SAMPLER(PathTracer, "path", "path tracing from the camera, with next-event estimation");
+
+}  // namespace
+}  // namespace ulam

@@ -1,0 +1,157 @@
+// The audit accepts right mutations and rejects planted bugs. Fixed seeds; statistical rejections at a level of 1e-6.
+
+#include "core/mcmc/audit/balance.h"
+#include "core/mcmc/audit/invariance.h"
+#include "core/mcmc/audit/jacobian.h"
+#include "core/mcmc/audit/rank.h"
+#include "core/mcmc/audit/sequential.h"
+#include "core/mcmc/audit/structure.h"
+#include "tests/support/catch.h"
+#include "tests/support/planted.h"
+
+using namespace ulam;
+using namespace ulam::audit;
+
+namespace {
+
+const RandomKey kKey = makeKey(20240611);
+
+const AuditScene& sceneNamed(const std::string& name) {
+    for (const auto& scene : auditScenes())
+        if (scene->name == name) return *scene;
+    throw std::runtime_error(name);
+}
+
+struct Audited {
+    States states;
+    StructureTally structure;
+    BalanceTally balance;
+    JacobianVerdict jacobian;
+};
+
+Audited audited(const std::string& mutation, const std::string& sceneName, Space target = Space::Path) {
+    planted::registerAll();
+    const AuditScene& scene = sceneNamed(sceneName);
+    const Subject subject(mutation, target, partnersOf(mutation, target));
+    Audited a;
+    a.states = drawStates(scene, subject, kKey, 2000, 200);
+    if (a.states.x.empty()) return a;
+    a.structure = auditStructure(scene, subject, a.states, kKey, 0, 2000);
+    a.balance = auditBalance(scene, subject, a.states, kKey, 0, 2000);
+    a.jacobian = judge(auditJacobian(scene, subject, a.states, kKey, 0, 400));
+    return a;
+}
+
+double smallestInvarianceP(const std::string& mutation, const std::string& sceneName, uint64_t starts) {
+    planted::registerAll();
+    const AuditScene& scene = sceneNamed(sceneName);
+    const Subject subject(mutation, Space::Path);
+    const TestFunctions functions(scene, subject, kKey);
+    const auto tests = identityTests(functions, auditInvariance(scene, subject, functions, kKey, 0, starts));
+    double smallest = 1;
+    for (const IdentityTest& test : tests) smallest = std::min(smallest, test.p);
+    return smallest * double(tests.size());
+}
+
+double rankP(const std::string& mutation) {
+    planted::registerAll();
+    return rankTest(auditRanks(sceneNamed("diffuse"), Subject(mutation, Space::Primary), kKey, 0, 20'000));
+}
+
+}  // namespace
+
+TEST_CASE("A scripted stream plays its script and goes on with its own numbers") {
+    const std::vector<Block> script{{0.1, 0.2, 0.3, 0.4}};
+    Random plain(kKey, 1, 2), scripted(kKey, 1, 2, script);
+    plain.nextBlock();
+    CHECK(scripted() == 0.1);
+    CHECK(scripted.blocks() == 1);
+    CHECK(scripted.nextBlock() == plain.nextBlock());
+    CHECK(scripted() == 0.2);
+}
+
+TEST_CASE("Used bytes tell states apart") {
+    const AuditScene& scene = sceneNamed("diffuse");
+    const Subject subject("identity", Space::Path);
+    Sample x = drawStates(scene, subject, kKey, 50, 1).x.at(0), y = x;
+    CHECK(usedBytes(x) == usedBytes(y));
+    y.path[y.path.length()].position.x += 1e-6f;
+    CHECK(usedBytes(x) != usedBytes(y));
+    y = x;
+    y.factors.at[1].pdfToLight *= 1 + 1e-15;
+    CHECK(usedBytes(x) != usedBytes(y));
+}
+
+TEST_CASE("Every registered mutation passes L0 and L1") {
+    for (const auto* entry : Registry<Mutation>::instance().entries()) {
+        const std::string& mutation = entry->name;
+        if (mutation.starts_with("planted")) continue;
+        CAPTURE(mutation);
+        const Audited a = audited(mutation, "specular");
+        CHECK(a.states.suitable > 0);
+        CHECK(a.structure.proposals > 0);
+        CHECK(a.structure.failures.count() == 0);
+        CHECK(a.balance.hasDensity);
+        CHECK(a.balance.pairs > 100);
+        CHECK(a.balance.failures.count() == 0);
+        CHECK(a.jacobian.comparisons > 50);
+        CHECK(a.jacobian.failures.count() == 0);
+    }
+    for (const char* mutation : {"large_step", "kelemen_step", "gaussian_step"}) {
+        CAPTURE(mutation);
+        const Audited a = audited(mutation, "outdoor", Space::Primary);
+        CHECK(a.structure.failures.count() == 0);
+        CHECK(a.balance.worst < kPrimaryResidual);
+        CHECK(a.balance.pairs > 100);
+    }
+}
+
+TEST_CASE("A right mutation of the tests' own passes") {
+    const Audited a = audited("planted_none", "diffuse");
+    CHECK(a.structure.failures.count() == 0);
+    CHECK(a.balance.failures.count() == 0);
+    CHECK(a.jacobian.equalities > 50);
+    CHECK(a.jacobian.failures.count() == 0);
+    CHECK(smallestInvarianceP("planted_none", "diffuse", 10'000) > 1e-3);
+}
+
+TEST_CASE("A density that lacks its measure balances with itself, but not with the map that samples it") {
+    const Audited a = audited("planted_geometry", "diffuse");
+    CHECK(a.structure.failures.count() == 0);
+    CHECK(a.balance.failures.count() == 0);
+    CHECK(a.jacobian.failures.count() > 0);
+    CHECK(smallestInvarianceP("planted_geometry", "diffuse", 40'000) < 1e-6);
+}
+
+TEST_CASE("Swapped densities are found") {
+    CHECK(audited("planted_swapped", "diffuse").jacobian.failures.count() > 0);
+    CHECK(smallestInvarianceP("planted_swapped", "diffuse", 40'000) < 1e-6);
+}
+
+TEST_CASE("A path through a wall is found") {
+    CHECK(audited("planted_blind", "diffuse").structure.failures.count() > 0);
+}
+
+TEST_CASE("A mutation without logDensity is not taken for audited, but its stated densities are") {
+    const Audited a = audited("planted_silent", "diffuse");
+    CHECK_FALSE(a.balance.hasDensity);
+    CHECK(a.jacobian.failures.count() > 0);
+}
+
+TEST_CASE("Ranks of exact starts") {
+    CHECK(rankP("kelemen_step") > 1e-3);
+    CHECK(rankP("gaussian_step") > 1e-3);
+    CHECK(rankP("large_step") > 1e-3);
+    CHECK(rankP("planted_drift") < 1e-6);
+}
+
+TEST_CASE("The sequential rule goes on only while in doubt") {
+    CHECK(sequentialTest(1e-6, [](int, double) { return 0.5; }).rounds == 1);
+    CHECK(sequentialTest(1e-6, [](int, double) { return 1e-9; }).rejected);
+    const SequentialResult doubtful = sequentialTest(1e-6, [](int round, double size) {
+        CHECK(size == (round == 0 ? 1 : kGrowth));
+        return round == 0 ? 1e-3 : 0.5;
+    });
+    CHECK(doubtful.rounds == 2);
+    CHECK_FALSE(doubtful.rejected);
+}

@@ -1,0 +1,42 @@
+#pragma once
+// What float geometry explains. A walk's ray starts `offset` away from its vertex, so the direction between the
+// positions of two vertices differs from the sampled one by about offset / length: densities of directions then differ
+// by that over the cosine, and probabilities of reflection by more near the critical angle.
+
+#include <limits>
+
+#include "core/path/factors.h"
+#include "core/path/reference_factors.h"
+
+namespace ulam {
+
+inline double shadingCosine(const Vertex& v, const Vec3f& w) {
+    return v.onSurface() ? std::abs(double(dot(v.shadingNormal, w))) : 1;
+}
+
+/// How far log densities and log f of a path may be from each other, walked and recomputed.
+inline double explainedLogError(const Tracing& tracing, const Path& path, const PathFactors& factors) {
+    double sum = 1e-6;
+    std::array<double, kMaxVertices> angle;
+    for (int i = 0; i < path.length(); ++i) {
+        const Edge& e = factors.edge[size_t(i)];
+        const bool endless = path[i].kind == Vertex::Kind::Infinite;
+        angle[size_t(i)] = tracing.offsetLength() * (endless ? 0 : std::sqrt(e.inverseD2)) + 4e-7;
+        for (const double c :
+             {e.cosA, e.cosB, shadingCosine(path[i], e.direction), shadingCosine(path[i + 1], e.direction)})
+            sum += angle[size_t(i)] / c;
+    }
+    for (int i = 1; i < path.length(); ++i) {
+        if (!isDelta(path[i].lobe)) continue;
+        // The range that the reference finds for a cosine error of kCosineError, taken to the actual one.
+        const FactorRanges r = scatteringReference(tracing.scene(), path[i], exactDirection(path[i], path[i - 1]),
+                                                   exactDirection(path[i], path[i + 1]));
+        const double scale = std::max(1.0, (angle[size_t(i - 1)] + angle[size_t(i)]) / kCosineError);
+        for (const Range& range : r)
+            if (range.high > 0) sum += scale * std::log(range.high / std::max(range.low, 1e-300));
+    }
+    // Relative errors, at worst all on one side.
+    return sum < 1 ? -std::log1p(-sum) : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace ulam

@@ -1,0 +1,130 @@
+// The image of a work budget is the same bytes, however the work is shared out or interrupted.
+
+#include <cstring>
+
+#include "core/render/driver.h"
+#include "tests/support/known_answers.h"
+#include "tests/support/path_scenes.h"
+
+using namespace ulam;
+
+namespace {
+
+bool sameBytes(const Image& a, const Image& b) {
+    return a.pixels.size() == b.pixels.size() &&
+           std::memcmp(a.pixels.data(), b.pixels.data(), a.pixels.size() * sizeof(Rgb)) == 0;
+}
+
+struct Job {
+    Json sampler;
+    Budget budget;
+};
+
+/// Every sampler that works in any scene, with a budget of each kind.
+std::vector<Job> jobs() {
+    std::vector<Job> all;
+    for (const std::string& name : samplerNames()) {
+        if (name == "portal") continue;  // needs a scene with openings
+        Json sampler = {{"type", name}, {"max_depth", 5}};
+        const bool chains = isChainSampler(name);
+        if (chains) sampler["chains"] = 37, sampler["bootstrap"] = 5000;
+        Budget spp, mutations, rays;
+        spp.spp = 6.5, mutations.mutations = 12'345, rays.rays = 500'000;
+        all.push_back({sampler, spp});
+        all.push_back({sampler, rays});
+        if (chains) all.push_back({sampler, mutations});
+    }
+    return all;
+}
+
+RenderResult run(const Scene& scene, const Job& job, int threads, int snapshots = 0) {
+    const auto sampler = Registry<Sampler>::instance().create(JsonNode(job.sampler));
+    RenderOptions options;
+    options.budget = job.budget;
+    options.key = makeKey(5);
+    options.threads = threads;
+    options.snapshots = snapshots;
+    return render(scene, *sampler, options);
+}
+
+}  // namespace
+
+TEST_CASE("the same work gives the same bytes with 1, 2, 3 and 8 threads") {
+    const Scene scene = buildScene(pathScene("glass_and_mirror").dictionary);
+    for (const Job& job : jobs()) {
+        INFO(job.sampler.dump());
+        const RenderResult one = run(scene, job, 1);
+        double sum = 0;
+        for (const Rgb& p : one.image.pixels) sum += p.x;
+        REQUIRE(sum > 0);
+        for (const int threads : {2, 3, 8}) {
+            INFO(threads << " threads");
+            const RenderResult many = run(scene, job, threads);
+            CHECK(many.units == one.units);
+            CHECK(many.statistics.rays == one.statistics.rays);
+            CHECK(many.statistics.featureEnergy == one.statistics.featureEnergy);
+            CHECK(sameBytes(many.image, one.image));
+        }
+    }
+}
+
+TEST_CASE("another seed gives another image") {
+    const Scene scene = buildScene(pathScene("diffuse").dictionary);
+    for (const Job& job : jobs()) {
+        const auto sampler = Registry<Sampler>::instance().create(JsonNode(job.sampler));
+        RenderOptions options;
+        options.budget = job.budget;
+        options.key = makeKey(5, 0, 1);
+        CHECK_FALSE(sameBytes(render(scene, *sampler, options).image, run(scene, job, 1).image));
+    }
+}
+
+TEST_CASE("snapshots do not change the result, and are results themselves") {
+    const Scene scene = buildScene(pathScene("diffuse").dictionary);
+    for (const Job& job : jobs()) {
+        INFO(job.sampler.dump());
+        const RenderResult plain = run(scene, job, 2), stopped = run(scene, job, 2, 3);
+        CHECK(stopped.units == plain.units);
+        CHECK(sameBytes(stopped.image, plain.image));
+        REQUIRE(stopped.snapshots.size() == 3);
+        if (job.budget.rays) continue;
+        for (const Snapshot& snapshot : stopped.snapshots) {
+            // As a run of that much work, with the seeding of the whole.
+            Job part = job;
+            const double units =
+                isChainSampler(job.sampler["type"]) ? double(snapshot.mutations) : double(snapshot.samples);
+            part.budget = {};
+            part.budget.spp = units / double(plain.image.pixels.size());
+            CHECK(sameBytes(run(scene, part, 3).image, snapshot.image));
+        }
+    }
+}
+
+TEST_CASE("a run that was stopped is repeated exactly by the work it did") {
+    const Scene scene = buildScene(pathScene("diffuse").dictionary);
+    for (const std::string& name : samplerNames()) {
+        if (name == "portal") continue;
+        INFO(name);
+        Job job{{{"type", name}, {"max_depth", 5}}, {}};
+        const bool chains = isChainSampler(name);
+        if (chains) job.sampler["chains"] = 37, job.sampler["bootstrap"] = 5000;
+        job.budget.spp = 1e6;
+        // Stopped from outside after some chunks.
+        std::atomic<bool> interrupt = false;
+        std::atomic<int> calls = 0;
+        const auto sampler = Registry<Sampler>::instance().create(JsonNode(job.sampler));
+        RenderOptions options;
+        options.budget = job.budget;
+        options.key = makeKey(5);
+        options.threads = 2;
+        options.interrupt = &interrupt;
+        options.progress = [&](double) { interrupt = ++calls > 1; };
+        const RenderResult stopped = render(scene, *sampler, options);
+        CHECK(stopped.interrupted);
+        REQUIRE(stopped.units > 0);
+        job.budget.spp = double(stopped.units) / double(stopped.image.pixels.size());
+        const RenderResult again = run(scene, job, 1);
+        CHECK(again.units == stopped.units);
+        CHECK(sameBytes(again.image, stopped.image));
+    }
+}

@@ -1,0 +1,196 @@
+// Mistakes in scenes: each gives an error that names place and remedy.
+
+#include "core/base/random.h"
+#include "core/scene/plugins.h"
+#include "tests/core/scene/load_text.h"
+
+using namespace ulam;
+
+TEST_CASE("unknown names are answered with the nearest one") {
+    const auto expect = [](const std::string& entries, const std::string& place, const std::string& nearest) {
+        const std::string message = errorOf(sceneWith(entries));
+        INFO(message);
+        CHECK(mentions(message, "scene.json:1:"));
+        CHECK(mentions(message, place));
+        CHECK(mentions(message, "did you mean \"" + nearest + "\""));
+    };
+    expect(R"("s": {"type": "sphere", "radiuss": 2})", "/s/radiuss", "radius");
+    expect(R"("s": {"type": "shpere"})", "/s/type", "sphere");
+    expect(R"("s": {"type": "sphere", "bsdf": {"type": "difuse"}})", "/s/bsdf", "diffuse");
+    expect(R"("s": {"type": "sphere", "bsdf": {"type": "conducter"}})", "/s/bsdf", "conductor");
+    expect(R"("s": {"type": "sphere", "bsdf": {"type": "diffuse", "reflectence": 1}})", "/s/bsdf/reflectence",
+           "reflectance");
+    expect(R"("s": {"type": "sphere", "bsdf": {"type": "dielectric", "int_ior": "bk8"}})", "/s/bsdf/int_ior", "bk7");
+    expect(R"("glass": {"type": "dielectric"}, "s": {"type": "sphere", "bsdf": {"type": "ref", "id": "glas"}})",
+           "/s/bsdf/id", "glass");
+    expect(R"("e": {"type": "constan"})", "/e", "constant");
+}
+
+TEST_CASE("textures are refused by name where only colours are supported") {
+    const std::string message = errorOf(sceneWith(
+        R"("s": {"type": "cube", "bsdf": {"type": "diffuse", "reflectance": {"type": "bitmap", "filename": "a.png"}}})"));
+    CHECK(mentions(message, "bitmap"));
+    CHECK(mentions(message, "/s/bsdf/reflectance"));
+    CHECK(mentions(message, "\"rgb\""));
+}
+
+TEST_CASE("values out of range or of the wrong type") {
+    CHECK(mentions(errorOf(sceneWith(R"("s": {"type": "sphere", "radius": 0})")), "/s/radius"));
+    CHECK(mentions(errorOf(sceneWith(R"("s": {"type": "sphere", "radius": "big"})")), "/s/radius"));
+    CHECK(mentions(errorOf(sceneWith(R"("s": {"type": "sphere", "center": [1, 2]})")), "/s/center"));
+    CHECK(mentions(errorOf(sceneWith(R"("s": {"type": "sphere", "radius": 1e39})")), "beyond 1e+15"));
+    CHECK(mentions(errorOf(sceneWith(R"("s": {"type": "sphere", "to_world": [{"type": "scale", "value": [1,2,1]}]})")),
+                   "uniform scale"));
+    CHECK(mentions(errorOf(sceneWith(R"("s": {"type": "cube", "bsdf": {"type": "diffuse", "reflectance": 1.5}})")),
+                   "/s/bsdf/reflectance"));
+    CHECK(mentions(errorOf(sceneWith(R"("s": {"type": "cube", "bsdf": 3})")), "\"bsdf\""));
+    CHECK(mentions(errorOf(sceneWith(R"("s": {"type": "cube", "to_world": [{"type": "scale", "value": 0}]})")),
+                   "not invertible"));
+    CHECK(mentions(errorOf(sceneWith(R"("s": {"type": "cube", "to_world": [{"type": "scale", "value": 1e20}]})")),
+                   "not finite"));
+    CHECK(mentions(errorOf(sceneWith(R"("p": {"type": "point", "position": [0, 1e16, 0]})")), "/p/position"));
+    CHECK(mentions(errorOf(sceneWith(R"("s": 1)")), "/s"));
+    CHECK(mentions(errorOf(sceneWith(R"("s": {"type": "cube"}, "s": {"type": "cube"})")), "\"s\""));
+}
+
+TEST_CASE("meshes with nothing in them or indices astray") {
+    CHECK(mentions(errorOf(sceneWith(R"("m": {"type": "mesh", "positions": [], "triangles": []})")), "no triangles"));
+    CHECK(mentions(
+        errorOf(sceneWith(R"("m": {"type": "mesh", "positions": [0,0,0, 1,0,0, 2,0,0], "triangles": [0,1,2]})")),
+        "no triangles"));
+    CHECK(mentions(
+        errorOf(sceneWith(R"("m": {"type": "mesh", "positions": [0,0,0, 1,0,0, 0,1,0], "triangles": [0,1,3]})")),
+        "/m/triangles/2"));
+    CHECK(
+        mentions(errorOf(sceneWith(R"("m": {"type": "mesh", "positions": [0,0,0, 1,0,0, 0,1,0], "triangles": [0,1]})")),
+                 "three vertex numbers"));
+    CHECK(mentions(
+        errorOf(sceneWith(
+            R"("m": {"type": "mesh", "positions": [0,0,0, 1,0,0, 0,1,0], "triangles": [0,1,2], "normals": [0,0,1]})")),
+        "one a vertex"));
+    CHECK(mentions(
+        errorOf(sceneWith(R"("m": {"type": "mesh", "positions": [0,0,0, 1,0,0, 0,1e39,0], "triangles": [0,1,2]})")),
+        "not finite"));
+    CHECK(mentions(errorOf(sceneWith(R"("m": {"type": "mesh", "triangles": [0,1,2]})")), "\"positions\" is missing"));
+}
+
+TEST_CASE("files: missing, damaged, or outside the scene's folder") {
+    const SceneFolder folder("errors_test");
+    folder.write("bad.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n");
+    folder.write("nan.obj", "v 0 0 0\nv 1 0 0\nv 0 nan 0\nf 1 2 3\n");
+    const auto load = [&](const std::string& file, ExitCode code = ExitCode::InvalidConfig) {
+        return errorOf(sceneWith(R"("m": {"type": "obj", "filename": ")" + file + "\"}"), code, folder.path);
+    };
+    CHECK(mentions(load("bad.obj"), "bad.obj:4"));
+    CHECK(mentions(load("nan.obj"), "not finite"));
+    const std::string missing = load("missing.obj", ExitCode::InputMissing);
+    CHECK(mentions(missing, "missing.obj"));
+    CHECK(mentions(missing, "/m/filename"));
+    for (const char* path : {"../a.obj", "a/../../a.obj", "/etc/passwd"})
+        CHECK(mentions(load(path), "leaves the folder"));
+    CHECK(mentions(errorOf(sceneWith(R"("m": {"type": "ply"})")), "\"filename\" is missing"));
+}
+
+TEST_CASE("scenes that cannot be rendered") {
+    CHECK(mentions(errorOf(R"({"type": "scene"})"), "no sensor"));
+    CHECK(mentions(errorOf("{}"), "\"type\""));
+    CHECK(mentions(errorOf("[]"), "an object"));
+    CHECK(mentions(errorOf(R"({"type": "scene", "sensor": {"type": "perspective"}})"), "no light"));
+    CHECK(mentions(
+        errorOf(R"({"type": "scene", "sensor": {"type": "perspective"}, "l": {"type": "point", "intensity": 0}})"),
+        "no light"));
+    CHECK(mentions(errorOf(sceneWith(R"("b": {"type": "perspective"})")), "exactly one sensor"));
+    CHECK(mentions(errorOf(sceneWith(R"("a": {"type": "constant"}, "b": {"type": "constant"})")),
+                   "at most one constant"));
+    CHECK(mentions(errorOf(sceneWith(R"("a": {"type": "area"})")), "nested in a shape"));
+    CHECK(mentions(errorOf(sceneWith(R"("s": {"type": "cube", "e": {"type": "point"}})")), "cannot be nested"));
+    CHECK(mentions(errorOf(sceneWith(R"("s": {"type": "cube", "e": {"type": "area"}, "f": {"type": "area"}})")),
+                   "at most one emitter"));
+    CHECK(mentions(errorOf(sceneWith(R"("s": {"type": "cube", "e": {"type": "diffuse"}, "f": {"type": "diffuse"}})")),
+                   "at most one BSDF"));
+}
+
+TEST_CASE("references and two-sided materials that make no sense") {
+    CHECK(mentions(errorOf(sceneWith(R"("s": {"type": "cube", "b": {"type": "ref", "id": "light"}})")), "no BSDF"));
+    CHECK(mentions(errorOf(sceneWith(R"("r": {"type": "ref", "id": "r"})")), "\"ref\""));
+    CHECK(mentions(errorOf(sceneWith(R"("t": {"type": "twosided"})")), "one or two"));
+    CHECK(mentions(errorOf(sceneWith(R"("t": {"type": "twosided", "b": {"type": "dielectric"}})")), "transmits"));
+    CHECK(mentions(errorOf(sceneWith(R"("t": {"type": "twosided", "b": {"type": "ref", "id": "t"}})")),
+                   "another twosided"));
+}
+
+TEST_CASE("sensors and films that make no sense") {
+    const auto sensor = [](const std::string& parameters) {
+        return errorOf(R"({"type": "scene", "light": {"type": "point"}, "sensor": {"type": "perspective", )" +
+                       parameters + "}}");
+    };
+    CHECK(mentions(sensor(R"("fov": 180)"), "/sensor/fov"));
+    CHECK(mentions(sensor(R"("fov_axis": "z")"), "/sensor/fov_axis"));
+    CHECK(mentions(sensor(R"("to_world": [{"type": "scale", "value": 2}])"), "must not scale"));
+    CHECK(mentions(sensor(R"("film": {"type": "hdrfilm", "width": 0})"), "/sensor/film/width"));
+    CHECK(mentions(sensor(R"("film": {"type": "hdrfilm", "width": 10, "crop_offset_x": 5, "crop_width": 6})"),
+                   "beyond the film"));
+    CHECK(mentions(sensor(R"("film": {"type": "ldrfilm"})"), "\"hdrfilm\""));
+    CHECK(mentions(sensor(R"("film": {"type": "hdrfilm", "rfilter": {"type": "gausian"}})"), "\"gaussian\""));
+    CHECK(mentions(sensor(R"("film": {"type": "hdrfilm"}, "other": {"type": "hdrfilm"})"), "one film"));
+}
+
+TEST_CASE("integrators and samplers are noted only") {
+    const Scene scene =
+        loadText(sceneWith(R"("integrator": {"type": "something"}, "x": {"type": "path", "max_depth": 3})"));
+    REQUIRE(scene.warnings.size() == 2);
+    CHECK(mentions(scene.warnings[0], "no effect"));
+}
+
+TEST_CASE("damaged scenes give a scene or an error") {
+    const std::string original = sceneWith(
+        R"("red": {"type": "diffuse", "reflectance": [0.9, 0.1, 0.2]}, "s": {"type": "sphere", "radius": 2, "bsdf": {"type": "ref", "id": "red"}},
+           "m": {"type": "mesh", "positions": [0,0,0, 1,0,0, 0,1,0], "triangles": [0,1,2]},
+           "t": {"type": "cube", "to_world": [{"type": "rotate", "axis": [1,0,0], "angle": 30}], "b": {"type": "twosided", "n": {"type": "conductor"}}})");
+    REQUIRE_NOTHROW(loadText(original));
+    Random random({9, 10}, 0, 0);
+    int errors = 0;
+    constexpr int kRounds = 3000;
+    for (int i = 0; i < kRounds; ++i) {
+        std::string text = original;
+        for (int k = random.index(3); k >= 0; --k)
+            text[size_t(random.index(int(text.size())))] = char(random.index(256));
+        if (random() < 0.2) text.resize(size_t(random.index(int(text.size()))));
+        try {
+            loadText(text);
+        } catch (const Error&) {
+            ++errors;
+        }
+    }
+    CHECK(errors > kRounds / 2);
+}
+
+TEST_CASE("deep nesting gives an error") {
+    const std::string open = R"({"type": "twosided", "n": )";
+    std::string deep;
+    for (int i = 0; i < 100; ++i) deep += open;
+    deep += "1" + std::string(100, '}');
+    errorOf(sceneWith("\"t\": " + deep));
+    for (int i = 0; i < 10; ++i) deep = "[" + deep + "]";
+    errorOf(sceneWith("\"t\": {\"type\": \"cube\", \"to_world\": " + std::string(100000, '[') +
+                      std::string(100000, ']') + "}"));
+}
+
+TEST_CASE("every plugin has a summary, and its parameters are explained") {
+    for (const PluginKind kind : {PluginKind::Shapes, PluginKind::Bsdfs, PluginKind::Emitters, PluginKind::Sensors,
+                                  PluginKind::Textures, PluginKind::Films, PluginKind::Filters}) {
+        CHECK_FALSE(scenePlugins(kind).empty());
+        for (const PluginInfo& plugin : scenePlugins(kind)) {
+            CHECK_FALSE(plugin.summary.empty());
+            for (const ParameterInfo& parameter : plugin.parameters) CHECK_FALSE(parameter.help.empty());
+        }
+    }
+}
+
+TEST_CASE("the schema knows every plugin and its parameters") {
+    const Json schema = sceneSchema();
+    CHECK(schema["$schema"] == "http://json-schema.org/draft-07/schema#");
+    const std::string text = schema.dump();
+    for (const char* name : {"\"sphere\"", "\"radius\"", "\"twosided\"", "\"hdrfilm\"", "\"int_ior\"", "\"ref\""})
+        CHECK(mentions(text, name));
+}

@@ -1,0 +1,107 @@
+#include "core/scene/shape.h"
+
+#include "core/base/random.h"
+#include "tests/support/catch.h"
+
+using namespace ulam;
+
+namespace {
+
+/// Two triangles of areas 1 and 3 in the plane z = 2.
+Shape unequalTriangles() {
+    Mesh mesh;
+    mesh.positions = {{0, 0, 2}, {2, 0, 2}, {0, 1, 2}, {0, -3, 2}};
+    mesh.triangles = {{0, 1, 2}, {0, 3, 1}};
+    Shape shape;
+    shape.geometry = mesh;
+    shape.emitter = 0;
+    shape.prepareSampling();
+    return shape;
+}
+
+Shape sphere(bool flipped) {
+    Shape shape;
+    shape.geometry = Sphere{{1, 2, 3}, 0.5f};
+    shape.flipNormals = flipped;
+    shape.prepareSampling();
+    return shape;
+}
+
+bool near(const Vec3f& a, const Vec3f& b, float tolerance = 1e-6f) {
+    return length(a - b) <= tolerance;
+}
+
+}  // namespace
+
+TEST_CASE("points of a mesh are uniform by area") {
+    const Shape shape = unequalTriangles();
+    CHECK(shape.area == Approx(4));
+    Random random({1, 2}, 0, 0);
+    constexpr int kPoints = 40000;
+    int first = 0;
+    Vec3d mean(0.0);
+    for (int i = 0; i < kPoints; ++i) {
+        const Vertex v = shape.samplePoint(7, random(), random());
+        CHECK(v.shape == 7);
+        first += v.primitive == 0;
+        mean += Vec3d(v.position);
+        REQUIRE(near(v.normal, {0, 0, 1}));
+    }
+    mean /= kPoints;
+    // 5 standard deviations of a fraction, and of a mean of coordinates whose deviation is below 1.
+    CHECK(std::abs(first / double(kPoints) - 0.25) < 5 * std::sqrt(0.25 * 0.75 / kPoints));
+    const Vec3d expected = Vec3d(2.0 / 3, 1.0 / 3, 2) * 0.25 + Vec3d(2.0 / 3, -1, 2) * 0.75;
+    CHECK((mean - expected).length() < 5 / std::sqrt(kPoints));
+}
+
+TEST_CASE("the numbers of a point give the point again") {
+    Random random({3, 4}, 0, 0);
+    for (const Shape& shape : {unequalTriangles(), sphere(false)})
+        for (int i = 0; i < 1000; ++i) {
+            const Vertex v = shape.samplePoint(0, random(), random());
+            const Sample2 s = shape.invertPoint(v);
+            const Vertex again = shape.samplePoint(0, s.u, s.v);
+            REQUIRE(again.primitive == v.primitive);
+            REQUIRE(near(again.position, v.position, 1e-5f));
+        }
+}
+
+TEST_CASE("points of a sphere lie on it, uniformly, with normals on the chosen side") {
+    const Shape outward = sphere(false), inward = sphere(true);
+    CHECK(outward.area == Approx(kPi));
+    Random random({5, 6}, 0, 0);
+    Vec3d mean(0.0);
+    constexpr int kPoints = 20000;
+    for (int i = 0; i < kPoints; ++i) {
+        const double u = random(), v = random();
+        const Vertex a = outward.samplePoint(0, u, v), b = inward.samplePoint(0, u, v);
+        REQUIRE(length(a.position - Vec3f(1, 2, 3)) == Approx(0.5));
+        REQUIRE(near(a.normal, (a.position - Vec3f(1, 2, 3)) * 2.0f, 1e-5f));
+        REQUIRE(near(b.normal, -a.normal));
+        REQUIRE(near(a.shadingNormal, a.normal));
+        mean += Vec3d(a.normal);
+    }
+    CHECK((mean / kPoints).length() < 5 / std::sqrt(kPoints));
+}
+
+TEST_CASE("shading normals are interpolated, geometric ones come from the winding") {
+    Shape shape;
+    Mesh mesh;
+    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    mesh.normals = {normalize(Vec3f(0, 0, 1)), normalize(Vec3f(1, 0, 1)), normalize(Vec3f(0, 1, 1))};
+    mesh.triangles = {{0, 1, 2}};
+    shape.geometry = mesh;
+    Vertex v{};
+    v.uv = {0.5f, 0.25f};
+    shape.setNormals(v);
+    CHECK(near(v.normal, {0, 0, 1}));
+    CHECK(near(v.shadingNormal, normalize(mesh.normals[0] * 0.25f + mesh.normals[1] * 0.5f + mesh.normals[2] * 0.25f)));
+
+    SECTION("normals that cancel out leave the geometric one") {
+        mesh.normals = {{0, 0, 0}, {0, 0, 1}, {0, 0, -1}};
+        shape.geometry = mesh;
+        v.uv = {0.5f, 0.5f};
+        shape.setNormals(v);
+        CHECK(near(v.shadingNormal, {0, 0, 1}));
+    }
+}

@@ -1,0 +1,262 @@
+#!/usr/bin/env python3
+"""The program as scripts use it: exit codes, what goes to stdout and stderr, and what is written."""
+
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+
+ULAM = os.environ.get("ULAM", "build/release/ulam")
+
+SCENE = {
+    "type": "scene",
+    "sensor": {"type": "perspective", "fov": 60, "film": {"type": "hdrfilm", "width": 16, "height": 16},
+               "to_world": [{"type": "lookat", "origin": [0, 0, 4], "target": [0, 0, 0], "up": [0, 1, 0]}]},
+    "wall": {"type": "rectangle", "to_world": [{"type": "scale", "value": 3}]},
+    "lamp": {"type": "rectangle", "emitter": {"type": "area", "radiance": 4},
+             "to_world": [{"type": "rotate", "axis": [1, 0, 0], "angle": 180},
+                          {"type": "translate", "value": [2.5, 0, 2]}]},
+}
+
+EXPERIMENT = {
+    "scenes": {"wall": "scene.json"},
+    "max_depth": 3,
+    "samplers": {"path": {"type": "path"}, "bdpt": {"type": "bdpt"}},
+    "baseline": "path",
+    "budget": {"spp": 4},
+    "replicates": 3,
+    "snapshots": 1,
+    "metrics": ["relmse"],
+    "reference": {"sampler": "bdpt", "budget": {"spp": 128}, "replicates": 4},
+}
+
+
+class CliTest(unittest.TestCase):
+    def setUp(self):
+        self.temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(self.temporary.cleanup)
+        self.folder = pathlib.Path(self.temporary.name)
+        self.environment = dict(os.environ, XDG_CACHE_HOME=str(self.folder / "cache"))
+        self.write("scene.json", SCENE)
+
+    def write(self, name, content):
+        (self.folder / name).write_text(json.dumps(content), encoding="utf8")
+
+    def ulam(self, *arguments, expect=0):
+        done = subprocess.run([os.path.abspath(ULAM), *map(str, arguments)], capture_output=True, text=True,
+                              cwd=self.folder, env=self.environment, timeout=300)
+        self.assertEqual(done.returncode, expect, f"{arguments}\n{done.stdout}\n{done.stderr}")
+        if expect not in (0, 1):
+            self.assertEqual(done.stdout, "", "results only on stdout")
+            self.assertNotEqual(done.stderr, "")
+        return done
+
+    def render(self, *arguments, expect=0):
+        return self.ulam("render", "scene.json", "--sampler", "path", "--spp", 2, "-o", "out.exr", "--quiet", *arguments,
+                         expect=expect)
+
+
+class Usage(CliTest):
+    def test_help_goes_to_stdout(self):
+        self.assertIn("render", self.ulam("--help").stdout)
+        self.assertIn("--resume", self.ulam("run", "--help").stdout)
+        self.assertRegex(self.ulam("--version").stdout, r"^\d+\.\d+\.\d+")
+
+    def test_usage_errors_are_exit_2(self):
+        self.ulam(expect=2)
+        self.assertIn('"render"', self.ulam("rendr", expect=2).stderr)
+        self.ulam("render", "scene.json", expect=2)
+        self.ulam("render", "scene.json", "--sampler", "path", "-o", "x.exr", expect=2)
+        self.render("--spp", "many", expect=2)
+        self.render("--time", "nan", expect=2)
+        self.render("--mutations", "-3", expect=2)
+        self.render("--threads", "0", expect=2)
+        self.render("--set", "samplermax_depth", expect=2)
+        self.render("--set", "camera.fov=3", expect=2)
+        self.ulam("list", "smaplers", expect=2)
+        self.ulam("render", "scene.json", "--sampler", "path", "--spp", 1, "-o", "out.png", expect=2)
+        self.ulam("scene", "scene.json", expect=2)
+
+
+class Render(CliTest):
+    def test_writes_image_and_numbers(self):
+        done = self.render("--stats", "out.json", "--seed", 7, "--set", "sampler.max_depth=3",
+                           "--set", "scene.film.width=8")
+        self.assertEqual(done.stdout, "")
+        stats = json.loads((self.folder / "out.json").read_text())
+        self.assertEqual(stats["parameters"]["max_depth"], 3)
+        self.assertEqual((stats["width"], stats["height"], stats["seed"]), (8, 16, 7))
+        self.assertEqual(stats["samples"], 2 * 8 * 16)
+
+    def test_same_seed_same_bytes_with_any_number_of_threads(self):
+        images = set()
+        for threads in 1, 2, 3:
+            self.render("--threads", threads)
+            images.add((self.folder / "out.exr").read_bytes())
+        self.assertEqual(len(images), 1)
+        self.render("--seed", 2)
+        self.assertNotIn((self.folder / "out.exr").read_bytes(), images)
+
+    def test_scenes_and_samplers_come_in_three_forms(self):
+        self.write("sampler.json", {"type": "bdpt", "max_depth": 2})
+        self.ulam("render", json.dumps(SCENE), "--sampler", "sampler.json", "--spp", 1, "-o", "a.exr")
+        self.ulam("render", "grid_of_holes", "--set", "scene.film.width=16", "--set", "scene.film.height=16",
+                  "--set", "scene.back=emitter", "--sampler", '{"type": "path"}', "--spp", 16, "-o", "b.exr")
+
+    def test_bad_configurations_are_exit_4_and_name_the_nearest(self):
+        self.assertIn('"max_depth"', self.render("--set", "sampler.max_dept=3", expect=4).stderr)
+        self.assertIn('"radiance"', self.render("--set", "scene.lamp.emitter.radianc=3", expect=4).stderr)
+        self.assertIn('"path"', self.ulam("render", "scene.json", "--sampler", "pth", "--spp", 1, "-o", "x.exr",
+                                          expect=4).stderr)
+        self.assertIn('"grid_of_holes"', self.ulam("render", "grid_of_hole", "--sampler", "path", "--spp", 1, "-o",
+                                                   "x.exr", expect=4).stderr)
+        (self.folder / "broken.json").write_text('{"type": "scene",\n  "a": }')
+        self.assertIn("broken.json:2:8", self.ulam("render", "broken.json", "--sampler", "path", "--spp", 1, "-o",
+                                                   "x.exr", expect=4).stderr)
+        self.render("--mutations", 100, expect=4)
+
+    def test_a_black_image_is_no_result(self):
+        done = self.render("--set", "scene.sensor.to_world=[{\"type\": \"lookat\", \"origin\": [0,0,4], "
+                           "\"target\": [0,0,9], \"up\": [0,1,0]}]", expect=4)
+        self.assertIn("no path carried light", done.stderr)
+        self.assertFalse((self.folder / "out.exr").exists())
+
+    def test_missing_inputs_are_exit_5(self):
+        self.ulam("render", "none.json", "--sampler", "path", "--spp", 1, "-o", "x.exr", expect=5)
+        self.render("--plugin", "none.so", expect=5)
+
+    def test_what_cannot_be_written_is_exit_6_before_any_work(self):
+        (self.folder / "file").write_text("")
+        start = time.monotonic()
+        self.ulam("render", "scene.json", "--sampler", "path", "--time", 60, "-o", "file/out.exr", expect=6)
+        self.render("--stats", "none/out.json", expect=6)
+        self.assertLess(time.monotonic() - start, 20)
+
+    def test_a_file_that_is_no_plugin_says_why(self):
+        (self.folder / "no.so").write_text("text")
+        self.assertIn("no.so", self.render("--plugin", "no.so", expect=4).stderr)
+
+    def test_a_signal_ends_a_render_with_an_image(self):
+        process = subprocess.Popen([os.path.abspath(ULAM), "render", "scene.json", "--sampler", "path", "--time", "60",
+                                    "-o", "out.exr"], cwd=self.folder, stderr=subprocess.PIPE)
+        time.sleep(3)
+        process.send_signal(signal.SIGTERM)
+        process.communicate(timeout=30)
+        self.assertEqual(process.returncode, 143)
+        self.assertTrue((self.folder / "out.exr").exists())
+
+
+class Describe(CliTest):
+    def test_lists_are_json(self):
+        for kind in ("samplers", "mutations", "kernels", "targets", "bsdfs", "shapes", "emitters", "sensors", "textures", "metrics",
+                     "generators"):
+            items = json.loads(self.ulam("list", kind, "--json").stdout)
+            self.assertTrue(items, kind)
+            for item in items:
+                self.assertTrue(item["name"] and item["summary"], item)
+                one = json.loads(self.ulam("list", kind, item["name"], "--json").stdout)
+                self.assertEqual(one, [item])
+                break
+        self.assertIn('"bdpt"', self.ulam("list", "samplers", "bdtp", expect=4).stderr)
+        self.assertIn("max_depth", self.ulam("list", "samplers", "path").stdout)
+
+    def test_schemas_are_draft_7(self):
+        for kind in "experiment", "scene":
+            schema = json.loads(self.ulam("schema", kind).stdout)
+            self.assertEqual(schema["$schema"], "http://json-schema.org/draft-07/schema#")
+            text = json.dumps(schema)
+            for reference in set(part.split('"')[0] for part in text.split('"#/definitions/')[1:]):
+                self.assertIn(reference, schema["definitions"])
+
+    def test_scene_information(self):
+        info = json.loads(self.ulam("scene", "scene.json", "--info", "--json").stdout)
+        self.assertEqual((info["width"], info["emitters"], len(info["hash"])), (16, 1, 64))
+        self.assertIn("16 x 16", self.ulam("scene", "scene.json", "--info").stdout)
+
+    def test_compare(self):
+        self.render()
+        same = json.loads(self.ulam("compare", "out.exr", "out.exr", "--json").stdout)["metrics"]
+        self.assertEqual(same["relmse"]["value"], 0)
+        self.assertIsNone(same["psnr"]["value"])
+        self.assertIn("flip", self.ulam("compare", "out.exr", "out.exr").stdout)
+        self.ulam("compare", "out.exr", "none.exr", expect=5)
+
+
+class Run(CliTest):
+    def setUp(self):
+        super().setUp()
+        self.write("tiny.json", EXPERIMENT)
+
+    def test_leaves_a_run_and_ends_with_verdict_and_report(self):
+        done = self.ulam("run", "tiny.json")
+        lines = done.stdout.splitlines()
+        self.assertEqual(len(lines), 2)
+        self.assertRegex(lines[0], r"^wall: bdpt has [\d.e-]+ times the relMSE of path .*undecided$")
+        report = pathlib.Path(lines[1])
+        self.assertEqual(report, (self.folder / "runs/tiny-1/report.html").resolve())
+        for name in ("experiment.json", "resolved.json", "provenance.json", "summary.json", "summary.csv", "summary.md",
+                     "summary.tex", "report.html", "cells/wall-path/r002/image.exr", "cells/wall-path/r002/result.json"):
+            self.assertTrue((report.parent / name).exists(), name)
+        self.assertIn("too few replicates for a verdict", done.stderr)
+        provenance = json.loads((report.parent / "provenance.json").read_text())
+        self.assertIn("run", provenance["arguments"])
+
+        # A second run is another folder, and its reference comes from the cache.
+        again = self.ulam("run", "tiny.json", "--json", "--quiet")
+        summary = json.loads(again.stdout)
+        self.assertEqual(summary["cells"][0]["reference_image"].split("/")[0], "references")
+        self.assertTrue((self.folder / "runs/tiny-2/report.html").exists())
+        self.assertEqual(len(list((self.folder / "cache/ulam/references").iterdir())), 1)
+
+        self.ulam("report", "runs/tiny-2")
+        self.ulam("report", "runs/none", expect=5)
+
+    def test_resume(self):
+        self.ulam("run", "tiny.json", "-o", "out")
+        self.ulam("run", "tiny.json", "-o", "out", expect=2)
+        (self.folder / "out/cells/wall-bdpt/r001/result.json").unlink()
+        self.assertIn("5 replicates were there already, 1 are new",
+                      self.ulam("run", "tiny.json", "-o", "out", "--resume").stderr)
+
+    def test_dry_run_writes_nothing(self):
+        done = self.ulam("run", "tiny.json", "--dry-run", "--set", "replicates=4")
+        self.assertIn("2 cells, 1 comparisons", done.stdout)
+        plan = json.loads(self.ulam("run", "tiny.json", "--dry-run", "--json").stdout)
+        self.assertEqual(len(plan["cells"][0]["random_keys"]), 3)
+        self.assertGreater(plan["estimated_seconds"], 0)
+        self.assertTrue(plan["warnings"])
+        self.assertFalse((self.folder / "runs").exists())
+
+    def test_set_names_its_origin(self):
+        self.assertIn("--set replicates=many", self.ulam("run", "tiny.json", "--set", "replicates=many", expect=4).stderr)
+
+    def test_bad_inputs(self):
+        self.ulam("run", "none.json", expect=5)
+        self.write("typo.json", dict(EXPERIMENT, replicats=3))
+        self.assertIn('"replicates"', self.ulam("run", "typo.json", expect=4).stderr)
+        (self.folder / "nan.json").write_text('{"budget": {"time": NaN}}')
+        self.ulam("run", "nan.json", expect=4)
+        (self.folder / "file").write_text("")
+        self.ulam("run", "tiny.json", "-o", "file/run", expect=6)
+
+    def test_a_signal_keeps_what_is_finished(self):
+        self.write("slow.json", dict(EXPERIMENT, budget={"time": 2}, replicates=20))
+        process = subprocess.Popen([os.path.abspath(ULAM), "run", "slow.json", "-o", "out"], cwd=self.folder,
+                                   env=self.environment, stderr=subprocess.PIPE)
+        for _ in range(600):
+            if list(self.folder.glob("out/cells/*/*/result.json")):
+                break
+            time.sleep(0.1)
+        process.send_signal(signal.SIGINT)
+        _, message = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 130)
+        self.assertIn(b"--resume", message)
+        self.assertTrue(list(self.folder.glob("out/cells/*/*/result.json")))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,134 @@
+#include "experiments/engine/plan.h"
+
+#include <set>
+
+#include "tests/experiments/engine/tiny.h"
+#include "tests/support/catch.h"
+
+using namespace ulam;
+using namespace ulam::tests;
+
+namespace {
+
+std::set<std::string> cellNames(const Plan& plan) {
+    std::set<std::string> names;
+    for (const Cell& cell : plan.cells) names.insert(cell.task.name);
+    return names;
+}
+
+}  // namespace
+
+TEST_CASE("cells are scenes × samplers × what the sweep changes", "[plan]") {
+    const Folder folder;
+    Json experiment = tinyExperiment();
+    experiment["scenes"]["other"] = tinyScene();
+    CHECK(cellNames(planOf(folder, experiment)) ==
+          std::set<std::string>{"wall-path", "wall-bdpt", "other-path", "other-bdpt"});
+
+    // A sampler that a sweep leaves alone is run once.
+    experiment["sweep"] = {{"samplers.bdpt.rr_depth", {3, 4}}, {"scenes.other.lamp.emitter.radiance", {1, 2}}};
+    const Plan plan = planOf(folder, experiment);
+    CHECK(cellNames(plan) ==
+          std::set<std::string>{"wall-path", "wall-bdpt,rr_depth=3", "wall-bdpt,rr_depth=4", "other-path,radiance=1",
+                                "other-path,radiance=2", "other-bdpt,rr_depth=3,radiance=1",
+                                "other-bdpt,rr_depth=3,radiance=2", "other-bdpt,rr_depth=4,radiance=1",
+                                "other-bdpt,rr_depth=4,radiance=2"});
+    CHECK(plan.comparisons.size() == 6);
+    for (const PlannedComparison& c : plan.comparisons) {
+        const Cell &cell = plan.cells[c.cell], &baseline = plan.cells[c.baseline];
+        CHECK(cell.task.sampler == "bdpt");
+        CHECK(baseline.task.sampler == "path");
+        CHECK(cell.task.scene == baseline.task.scene);
+    }
+    CHECK(plan.references.size() == 3);
+}
+
+TEST_CASE("random numbers depend on seed, cell and replicate and on nothing else", "[plan]") {
+    const Folder folder;
+    const auto keys = [&](const Json& experiment) {
+        std::map<std::string, std::pair<uint32_t, uint32_t>> all;
+        for (const Cell& cell : planOf(folder, experiment).cells)
+            for (int r = 0; r < cell.task.replicates; ++r)
+                all[fmt::format("{} {}", cell.task.name, r)] = {cell.task.key(r).low, cell.task.key(r).high};
+        return all;
+    };
+    const auto plain = keys(tinyExperiment());
+    std::set<std::pair<uint32_t, uint32_t>> different;
+    for (const auto& [name, key] : plain) different.insert(key);
+    CHECK(different.size() == plain.size());
+
+    // Another cell, another budget, more replicates: the old ones stay.
+    Json larger = tinyExperiment();
+    larger["samplers"]["aaa"] = {{"type", "path"}};
+    larger["replicates"] = 5;
+    larger["budget"]["spp"] = 9;
+    const auto more = keys(larger);
+    for (const auto& [name, key] : plain) CHECK(more.at(name) == key);
+
+    Json reseeded = tinyExperiment();
+    reseeded["seed"] = 2;
+    for (const auto& [name, key] : keys(reseeded)) CHECK(plain.at(name) != key);
+
+    // Recorded once: seeds must not change from version to version.
+    const RandomKey first = planOf(folder, tinyExperiment()).cells[0].task.key(0);
+    CHECK(first.low == 0x6c06682e);
+    CHECK(first.high == 0x4215948c);
+}
+
+TEST_CASE("blocks hold one replicate of every cell, in changing order", "[plan]") {
+    const Folder folder;
+    Json experiment = tinyExperiment();
+    experiment["replicates"] = 12;
+    experiment["samplers"]["more"] = {{"type", "path"}};
+    const Plan plan = planOf(folder, experiment);
+    const auto order = plan.order();
+    REQUIRE(order.size() == 36);
+    std::set<std::vector<std::size_t>> orders;
+    for (std::size_t block = 0; block < 12; ++block) {
+        std::vector<std::size_t> cells;
+        for (std::size_t i = 0; i < 3; ++i) {
+            CHECK(order[3 * block + i].number == int(block));
+            cells.push_back(order[3 * block + i].cell);
+        }
+        CHECK(std::set<std::size_t>(cells.begin(), cells.end()).size() == 3);
+        orders.insert(cells);
+    }
+    CHECK(orders.size() > 2);
+}
+
+TEST_CASE("the smallest attainable p tells when replicates are too few", "[plan]") {
+    const Folder folder;
+    Json experiment = tinyExperiment();
+    CHECK(planOf(folder, experiment).smallestAdjustedP() == std::vector<double>{0.1});  // 2 of 20 splits
+    experiment["replicates"] = 8;
+    CHECK(planOf(folder, experiment).smallestAdjustedP()[0] < 2e-4);
+}
+
+TEST_CASE("everything that determines a replicate is in the task's hash", "[plan]") {
+    const Folder folder;
+    const auto hash = [&](const std::string& path, const Json& value) {
+        Json experiment = tinyExperiment();
+        if (!path.empty()) setValueByPath(experiment, path, value);
+        return planOf(folder, experiment).cells[0].task.hash();
+    };
+    const std::string plain = hash("", {});
+    CHECK(hash("replicates", 9) == plain);
+    CHECK(hash("metrics", {"mse"}) == plain);
+    CHECK(hash("budget.spp", 5) != plain);
+    CHECK(hash("seed", 5) != plain);
+    CHECK(hash("max_depth", 4) != plain);
+    CHECK(hash("film.width", 8) != plain);
+    CHECK(hash("snapshots", 1) != plain);
+    CHECK(hash("samplers.path.rr_depth", 7) != plain);
+    CHECK(hash("scenes.wall.lamp.emitter.radiance", 7) != plain);
+}
+
+TEST_CASE("the resolved experiment holds defaults, seeds and hashes", "[plan]") {
+    const Folder folder;
+    const Json resolved = planOf(folder, tinyExperiment()).resolved();
+    const Json& cell = resolved["cells"][0];
+    CHECK(cell["parameters"].contains("rr_depth"));
+    CHECK(cell["random_keys"].size() == 3);
+    CHECK(resolved["scenes"].contains(cell["scene_hash"].get<std::string>()));
+    CHECK(resolved["references"].contains(cell["reference"].get<std::string>()));
+}

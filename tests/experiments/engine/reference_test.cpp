@@ -1,0 +1,141 @@
+#include "experiments/engine/reference.h"
+
+#include "core/image/image_io.h"
+#include "experiments/engine/replicate.h"
+#include "tests/experiments/engine/tiny.h"
+#include "tests/support/catch.h"
+
+using namespace ulam;
+using namespace ulam::tests;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Parts of an image of 32 × 16: uniform noise around 1, and the second half of the parts brighter by `shift` in the
+/// right tile.
+std::vector<Image> noisyParts(double shift) {
+    std::vector<Image> parts;
+    Random random(makeKey(5), 0, 0);
+    for (int p = 0; p < 16; ++p) {
+        Image image(32, 16);
+        for (int y = 0; y < 16; ++y)
+            for (int x = 0; x < 32; ++x) image.at(x, y) = Rgb(float(0.5 + random() + (p >= 8 && x >= 16 ? shift : 0)));
+        parts.push_back(image);
+    }
+    return parts;
+}
+
+fs::path writeTinyReference(const Folder& folder) {
+    Image image(16, 16, Rgb(0.5f)), variance(16, 16, Rgb(1e-4f));
+    writeExr(folder / "known.exr", image);
+    writeExr(folder / "known.variance.exr", variance);
+    return folder / "known.exr";
+}
+
+}  // namespace
+
+TEST_CASE("parts give a mean and its variance", "[reference]") {
+    const CombinedParts combined = combineParts(noisyParts(0));
+    double mean = 0, variance = 0;
+    for (std::size_t i = 0; i < combined.image.pixels.size(); ++i) {
+        mean += combined.image.pixels[i].x / double(combined.image.pixels.size());
+        variance += combined.variance.pixels[i].x / double(combined.image.pixels.size());
+    }
+    // 512 pixels of the mean of 16 numbers of variance 1/12: standard errors 0.0032 and about 1.4e-4.
+    CHECK(mean == Approx(1).margin(0.02));
+    CHECK(variance == Approx(1.0 / 12 / 16).margin(7e-4));
+}
+
+TEST_CASE("halves that differ in one tile are found", "[reference]") {
+    CHECK(combineParts(noisyParts(0)).smallestP > kHalvesLevel);
+    CHECK(combineParts(noisyParts(0.1)).smallestP < kHalvesLevel);
+}
+
+TEST_CASE("a reference is made in parts and cached across runs", "[reference]") {
+    const Folder folder;
+    const Plan plan = planOf(folder, tinyExperiment());
+    const PlannedReference& planned = plan.references.at(0);
+    CHECK_FALSE(prepareReference(planned, folder / "run"));
+    runIn(folder, plan);
+    const fs::path made = folder / "run" / "references" / planned.key;
+    for (const char* file : {"image.exr", "variance.exr", "result.json"}) {
+        CHECK(fs::exists(made / file));
+        CHECK(fs::exists(referenceCache() / planned.key / file));
+    }
+    CHECK_FALSE(fs::exists(made / "parts"));
+    const Reference reference = readReference(planned, folder / "run");
+    CHECK(reference.halvesAgree);
+    double variance = 0;
+    for (const Rgb& v : reference.variance.pixels) variance += v.x;
+    CHECK(variance > 0);
+
+    // Another run takes it from the cache, byte by byte.
+    CHECK(prepareReference(planned, folder / "second"));
+    CHECK(readFile(folder / "second" / "references" / planned.key / "image.exr") == readFile(made / "image.exr"));
+}
+
+TEST_CASE("what changes a reference changes its key", "[reference]") {
+    const Folder folder;
+    const auto key = [&](const std::string& path, const Json& value) {
+        Json experiment = tinyExperiment();
+        if (!path.empty()) setValueByPath(experiment, path, value);
+        return planOf(folder, experiment).references.at(0).key;
+    };
+    const std::string plain = key("", {});
+    CHECK(key("seed", 7) == plain);
+    CHECK(key("budget.spp", 7) == plain);
+    CHECK(key("max_depth", 4) != plain);
+    CHECK(key("film.height", 8) != plain);
+    CHECK(key("reference.budget.spp", 512) != plain);
+    CHECK(key("reference.replicates", 4) != plain);
+    CHECK(key("scenes.wall.lamp.emitter.radiance", 3) != plain);
+}
+
+TEST_CASE("a file is a reference if its variance stands beside it", "[reference]") {
+    const Folder folder;
+    Json experiment = tinyExperiment();
+    experiment["reference"] = "known.exr";
+    writeTinyReference(folder);
+    const Plan plan = planOf(folder, experiment);
+    REQUIRE(prepareReference(plan.references[0], folder / "run"));
+    const Reference reference = readReference(plan.references[0], folder / "run");
+    CHECK(reference.image.at(3, 3).x == 0.5f);
+    CHECK(reference.variance.at(3, 3).x == 1e-4f);
+
+    fs::remove(folder / "known.variance.exr");
+    CHECK(errorOf([&] { planOf(folder, experiment); }).first == ExitCode::InputMissing);
+
+    writeExr(folder / "known.variance.exr", Image(8, 8, Rgb(1)));
+    const Plan wrong = planOf(folder, experiment);
+    CHECK(contains(errorOf([&] { prepareReference(wrong.references[0], folder / "run2"); }).second, "16 x 16"));
+}
+
+TEST_CASE("a generator's truth has no variance, and knows the features' shares", "[reference]") {
+    const Folder folder;
+    Json experiment = tinyExperiment();
+    experiment["scenes"] = {
+        {"emitter", {{"type", "grid_of_holes"}, {"holes", 2}, {"back", "emitter"}, {"thickness", 0}}}};
+    experiment["film"]["rfilter"] = {{"type", "box"}};
+    experiment["reference"] = "truth";
+    experiment["max_depth"] = 2;
+    const Plan plan = planOf(folder, experiment);
+    REQUIRE(prepareReference(plan.references[0], folder / "run"));
+    const Reference reference = readReference(plan.references[0], folder / "run");
+    REQUIRE(reference.featureShares.size() == 4);
+    CHECK(reference.featureShares[2].mean == Approx(0.25).epsilon(1e-3));
+    CHECK(reference.variance.at(5, 5).x == 0);
+
+    experiment["film"]["rfilter"] = {{"type", "gaussian"}};
+    CHECK(contains(errorOf([&] { planOf(folder, experiment); }).second, "box filter"));
+}
+
+TEST_CASE("a black reference is refused", "[reference]") {
+    const Folder folder;
+    Json experiment = tinyExperiment();
+    experiment["scenes"]["wall"]["sensor"]["to_world"] = {
+        {{"type", "lookat"}, {"origin", {0, 0, 4}}, {"target", {0, 0, 9}}, {"up", {0, 1, 0}}}};
+    const Plan plan = planOf(folder, experiment);
+    const auto [code, message] = errorOf([&] { runIn(folder, plan); });
+    CHECK(code == ExitCode::InvalidConfig);
+    CHECK(contains(message, "no path carried light"));
+}

@@ -1,0 +1,165 @@
+#include "experiments/engine/summary.h"
+
+#include <algorithm>
+
+#include "tests/experiments/engine/tiny.h"
+#include "tests/support/catch.h"
+
+using namespace ulam;
+using namespace ulam::tests;
+namespace fs = std::filesystem;
+
+namespace {
+
+Json summaryOf(const Folder& folder, const Json& experiment) {
+    const Plan plan = planOf(folder, experiment);
+    runIn(folder, plan);
+    return summarize(plan, folder / "run", {});
+}
+
+}  // namespace
+
+TEST_CASE("the summary has what scripts and the report read", "[summary]") {
+    const Folder folder;
+    const Json summary = summaryOf(folder, tinyExperiment());
+    for (const char* key : {"schema_version", "name", "primary_metric", "cells", "comparisons", "verdicts", "warnings"})
+        CHECK(summary.contains(key));
+    REQUIRE(summary["cells"].size() == 2);
+    for (const Json& cell : summary["cells"]) {
+        for (const char* key : {"cell",
+                                "scene",
+                                "sampler",
+                                "parameters",
+                                "replicates",
+                                "metrics",
+                                "variance",
+                                "bias_squared",
+                                "seconds",
+                                "rays",
+                                "mutations",
+                                "normalization_cv",
+                                "convergence",
+                                "slope",
+                                "mutation_statistics",
+                                "features",
+                                "feature_grid",
+                                "reference",
+                                "reference_image",
+                                "reference_too_poor",
+                                "warnings",
+                                "worst_replicate",
+                                "median_replicate"})
+            CHECK(cell.contains(key));
+        const Json& metric = cell["metrics"]["relmse"];
+        REQUIRE(metric["values"].size() == 3);
+        CHECK(metric["ci95"][0] < metric["mean"]);
+        CHECK(metric["mean"] < metric["ci95"][1]);
+        CHECK(metric["trimmed_mean"].get<double>() <= metric["mean"].get<double>() * (1 + 1e-12));
+        CHECK(metric["values"][cell["worst_replicate"].get<std::size_t>()] == metric["worst_replicate"]);
+        CHECK(cell["convergence"].size() == 3);
+        CHECK(cell["convergence"][0]["error"] > cell["convergence"][2]["error"]);
+        CHECK(cell["convergence"][2]["error"] == metric["mean"]);
+        CHECK(fs::exists(folder / "run" / cell["reference_image"].get<std::string>()));
+    }
+    REQUIRE(summary["comparisons"].size() == 1);
+    for (const char* key : {"scene", "sampler", "baseline", "metric", "ratio", "ci95", "speedup", "speedup_ci95", "p",
+                            "p_adjusted", "verdict"})
+        CHECK(summary["comparisons"][0].contains(key));
+    // Three replicates cannot decide anything.
+    CHECK(summary["comparisons"][0]["verdict"] == "undecided");
+    CHECK(contains(summary["verdicts"][0], "wall: bdpt has "));
+}
+
+TEST_CASE("a clear difference is decided", "[summary]") {
+    const Folder folder;
+    Json experiment = tinyExperiment();
+    experiment["replicates"] = 6;
+    const Json summary = summaryOf(folder, experiment);
+    CHECK(summary["comparisons"][0]["p_adjusted"].get<double>() < 0.05);
+    CHECK(summary["comparisons"][0]["verdict"] == "better");
+    CHECK(contains(summary["verdicts"][0], ": better"));
+}
+
+TEST_CASE("a reference worse than the images decides nothing and says so", "[summary]") {
+    const Folder folder;
+    Json experiment = tinyExperiment();
+    experiment["budget"]["spp"] = 256;
+    experiment["reference"]["budget"]["spp"] = 16;
+    const Json summary = summaryOf(folder, experiment);
+    for (const Json& cell : summary["cells"]) CHECK(cell["reference_too_poor"] == true);
+    CHECK(summary["comparisons"][0]["verdict"] == "undecided");
+    CHECK(contains(summary["verdicts"][0], "too poor"));
+    CHECK(contains(summary["warnings"].dump(), "too poor"));
+}
+
+TEST_CASE("features come with their truth", "[summary]") {
+    const Folder folder;
+    Json experiment = tinyExperiment();
+    experiment["scenes"] = {
+        {"emitter", {{"type", "grid_of_holes"}, {"holes", 2}, {"back", "emitter"}, {"thickness", 0}}}};
+    experiment["film"]["rfilter"] = {{"type", "box"}};
+    experiment["reference"] = "truth";
+    experiment["max_depth"] = 2;
+    experiment["budget"]["spp"] = 64;
+    const Json summary = summaryOf(folder, experiment);
+    const Json& cell = summary["cells"][0];
+    CHECK(cell["feature_grid"] == Json{2, 2});
+    REQUIRE(cell["features"].size() == 4);
+    double sum = 0;
+    for (const auto& [name, feature] : cell["features"].items()) {
+        sum += feature["share"].get<double>();
+        CHECK(feature["truth"].get<double>() == Approx(0.25).epsilon(1e-3));
+        CHECK(feature["per_replicate"].size() == 3);
+        CHECK(feature["jumps_per_million"].is_null());
+    }
+    CHECK(sum == Approx(1));
+}
+
+TEST_CASE("chains report their mutations", "[summary]") {
+    const Folder folder;
+    Json experiment = tinyExperiment();
+    experiment["samplers"] = {{"chains", {{"type", "pssmlt"}}}};
+    experiment["baseline"] = "";
+    experiment["budget"] = {{"spp", 16}};
+    const Json summary = summaryOf(folder, experiment);
+    const Json& cell = summary["cells"][0];
+    CHECK(cell["normalization_cv"].get<double>() > 0);
+    CHECK(cell["mutations"].get<double>() >= 16 * 256);
+    double proposed = 0;
+    for (const auto& [name, m] : cell["mutation_statistics"].items()) {
+        proposed += m["proposed"].get<double>();
+        CHECK(m["accepted"] <= m["proposed"]);
+    }
+    CHECK(proposed == Approx(3 * cell["mutations"].get<double>()));
+    CHECK(summary["comparisons"].empty());
+}
+
+TEST_CASE("snapshots from before the first mutation are no part of the convergence", "[summary]") {
+    const Folder folder;
+    Json experiment = tinyExperiment();
+    experiment["samplers"] = {{"chains", {{"type", "pssmlt"}}}};
+    experiment["baseline"] = "";
+    experiment["budget"] = {{"time", 0.05}};
+    experiment["snapshots"] = 20;  // the first is due after 50 nanoseconds
+    const Json summary = summaryOf(folder, experiment);
+    const Json& convergence = summary["cells"][0]["convergence"];
+    CHECK(convergence.size() < 21);
+    CHECK(convergence.back()["fraction"] == 1);
+    for (const Json& point : convergence) CHECK(point["mutations"].get<double>() > 0);
+}
+
+TEST_CASE("tables have a row for each cell", "[summary]") {
+    const Folder folder;
+    Json experiment = tinyExperiment();
+    experiment["sweep"] = {{"samplers.bdpt.rr_depth", {3, 4}}};
+    const Json summary = summaryOf(folder, experiment);
+    const auto lines = [](const std::string& text) { return std::count(text.begin(), text.end(), '\n'); };
+    CHECK(lines(summaryCsv(summary)) == 1 + 3 * 2);
+    CHECK(contains(summaryMarkdown(summary), "| wall-bdpt,rr_depth=4 | 3 |"));
+    CHECK(contains(summaryCsv(summary), "\"wall-bdpt,rr_depth=4\""));
+    CHECK(contains(summaryLatex(summary), "\\toprule"));
+    CHECK(contains(summaryLatex(summary), "bdpt, rr\\_depth 4"));
+    writeSummary(folder / "run", summary);
+    for (const char* file : {"summary.json", "summary.csv", "summary.md", "summary.tex"})
+        CHECK(fs::exists(folder / "run" / file));
+}

@@ -1,0 +1,162 @@
+#include "experiments/report/report.h"
+
+#include <cstdlib>
+#include <filesystem>
+#include <set>
+#include <string>
+
+#include "core/base/error.h"
+#include "core/base/file.h"
+#include "experiments/report/picture_code.h"
+#include "tests/experiments/report/fake_run.h"
+#include "tests/support/catch.h"
+
+using namespace ulam;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// An empty folder, gone at the end. With ULAM_REPORT_DIR the folder of that name is used and kept.
+class RunFolder {
+public:
+    explicit RunFolder(const char* keep = nullptr) : kept_(keep != nullptr) {
+        path = kept_ ? fs::path(keep)
+                     : fs::temp_directory_path() / ("ulam_report_test_" + std::to_string(std::random_device{}()));
+        fs::create_directories(path);
+    }
+    ~RunFolder() {
+        if (!kept_) fs::remove_all(path);
+    }
+    fs::path path;
+
+private:
+    bool kept_;
+};
+
+Rgb decodePixel(const std::string& bytes, std::size_t i) {
+    uint32_t word = 0;
+    for (int k = 3; k >= 0; --k) word = word << 8 | static_cast<uint8_t>(bytes[4 * i + std::size_t(k)]);
+    const float unit = std::ldexp(1.0f, int(word >> 27) - 24);
+    return Rgb(float(word & 511), float(word >> 9 & 511), float(word >> 18 & 511)) * unit;
+}
+
+std::size_t countOf(const std::string& text, const std::string& word) {
+    std::size_t n = 0;
+    for (std::size_t at = text.find(word); at != text.npos; at = text.find(word, at + 1)) ++n;
+    return n;
+}
+
+}  // namespace
+
+TEST_CASE("RGB9E5 keeps the largest channel to one part in 512 over its whole range") {
+    std::mt19937 random(7);
+    Image image(1000, 1);
+    for (Rgb& pixel : image.pixels) {
+        const float scale = std::exp2(float(random() % 2800) / 100 - 13);
+        pixel = Rgb(scale, scale * float(random() % 1000) / 1000, scale * float(random() % 1000) / 1000);
+    }
+    const std::string bytes = encodeRgb9e5(image);
+    REQUIRE(bytes.size() == 4000);
+    for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+        const Rgb decoded = decodePixel(bytes, i), original = image.pixels[i];
+        for (int c = 0; c < 3; ++c) CHECK(std::abs(decoded[c] - original[c]) <= original.x / 510);
+    }
+}
+
+TEST_CASE("RGB9E5 at its edges") {
+    Image image(5, 1);
+    image.pixels = {Rgb(0), Rgb(-3, 1, 0), Rgb(1e9f), Rgb(1023.9f, 0, 0), Rgb(1e-12f)};
+    const std::string bytes = encodeRgb9e5(image);
+    CHECK(decodePixel(bytes, 0) == Rgb(0));
+    CHECK(decodePixel(bytes, 1) == Rgb(0, 1, 0));
+    CHECK(decodePixel(bytes, 2) == Rgb(65408));
+    CHECK(decodePixel(bytes, 3) == Rgb(1024, 0, 0));  // the mantissa rounds up to 512
+    CHECK(decodePixel(bytes, 4) == Rgb(0));
+}
+
+TEST_CASE("base64 as in RFC 4648, section 10") {
+    CHECK(encodeBase64("") == "");
+    CHECK(encodeBase64("f") == "Zg==");
+    CHECK(encodeBase64("fo") == "Zm8=");
+    CHECK(encodeBase64("foo") == "Zm9v");
+    CHECK(encodeBase64("foobar") == "Zm9vYmFy");
+    CHECK(encodeBase64("\xff\xef\xbe") == "/+++");
+}
+
+TEST_CASE("shrinking averages whole blocks and what is left at the edges") {
+    Image image(3, 2);
+    for (int y = 0; y < 2; ++y)
+        for (int x = 0; x < 3; ++x) image.at(x, y) = Rgb(float(x + 10 * y));
+    const Image small = shrink(image, 2);
+    REQUIRE(small.width == 2);
+    REQUIRE(small.height == 1);
+    CHECK(small.at(0, 0).x == Approx(5.5));
+    CHECK(small.at(1, 0).x == Approx(7));
+    CHECK(shrink(image, 1) == image);
+}
+
+TEST_CASE("a report holds its run and asks for nothing") {
+    RunFolder folder(std::getenv("ULAM_REPORT_DIR"));
+    tests::FakeRun(folder.path, 256, 8, 8).write();
+    writeReport(folder.path);
+    const std::string page = readFile(folder.path / "report.html");
+
+    CHECK(page.size() < 12e6);
+    // 2 references, and per cell the mean, the median and the worst replicate.
+    CHECK(countOf(page, "<script type=\"text/plain\"") == 2 + 6 * 3);
+    for (const char* address : {"src=\"", "@import", "url(http", "<link rel=\"stylesheet", "fetch(", "XMLHttpRequest"})
+        CHECK(countOf(page, address) == 0);
+    // Text from files cannot end the element it stands in: every script element is one of ours.
+    CHECK(countOf(page, "</script") == 1 + 20 + 2);
+    CHECK(countOf(page, "@SCRIPT@") == 0);
+    CHECK(page.find("normalisation refined by large steps") != page.npos);
+    CHECK(page.find("<title>backlit_grid_of_holes · Ulam</title>") != page.npos);
+}
+
+TEST_CASE("the mean over replicates is embedded, not a replicate") {
+    RunFolder folder;
+    for (int r = 0; r < 2; ++r) {
+        const fs::path replicate = folder.path / "cells/a" / ("r00" + std::to_string(r));
+        fs::create_directories(replicate);
+        writeExr((replicate / "image.exr").string(), Image(2, 2, Rgb(r == 0 ? 1.0f : 3.0f)));
+    }
+    writeFileAtomically(folder.path / "summary.json",
+                        R"({"cells": [{"cell": "a", "scene": "s", "sampler": "x", "replicates": 2}]})");
+    writeReport(folder.path);
+    const std::string page = readFile(folder.path / "report.html");
+    CHECK(page.find(">" + encodeBase64(encodeRgb9e5(Image(2, 2, Rgb(2)))) + "<") != page.npos);
+}
+
+TEST_CASE("images too large for one page are halved until they fit") {
+    RunFolder folder;
+    fs::create_directories(folder.path / "cells/a/r000");
+    writeExr((folder.path / "cells/a/r000/image.exr").string(), Image(1500, 1200, Rgb(1)));
+    writeFileAtomically(folder.path / "summary.json", R"({"cells": [{"cell": "a", "scene": "s", "sampler": "x"}]})");
+    writeReport(folder.path);
+    const std::string page = readFile(folder.path / "report.html");
+    CHECK(double(page.size()) < kReportImageBytes);
+    CHECK(page.find(R"("width":750,"height":600)") != page.npos);
+    CHECK(page.find(R"("shrink":2)") != page.npos);
+}
+
+TEST_CASE("a report needs a summary and nothing else") {
+    RunFolder folder;
+    try {
+        writeReport(folder.path);
+        FAIL("no error without summary.json");
+    } catch (const Error& error) {
+        CHECK(error.code() == ExitCode::InputMissing);
+    }
+    writeFileAtomically(folder.path / "summary.json", R"({"cells": []})");
+    writeReport(folder.path);
+    CHECK(fs::file_size(folder.path / "report.html") > 100000);  // Chart.js alone is larger
+
+    writeFileAtomically(folder.path / "summary.json", R"({"cells": [{"cell": 3}]})");
+    try {
+        writeReport(folder.path);
+        FAIL("no error for a damaged summary");
+    } catch (const Error& error) {
+        CHECK(error.code() == ExitCode::InvalidConfig);
+        CHECK(std::string(error.what()).find("summary.json") != std::string::npos);
+    }
+}

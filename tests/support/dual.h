@@ -1,0 +1,32 @@
+#pragma once
+// The smallest dual number: a value and its derivative with respect to one parameter.
+
+#include <cmath>
+
+namespace ulam {
+
+struct Dual {
+    double v = 0, d = 0;
+
+    constexpr Dual() = default;
+    constexpr Dual(double value) : v(value) {}
+    constexpr Dual(double value, double derivative) : v(value), d(derivative) {}
+
+    Dual operator-() const { return {-v, -d}; }
+    friend Dual operator+(Dual a, Dual b) { return {a.v + b.v, a.d + b.d}; }
+    friend Dual operator-(Dual a, Dual b) { return {a.v - b.v, a.d - b.d}; }
+    friend Dual operator*(Dual a, Dual b) { return {a.v * b.v, a.d * b.v + a.v * b.d}; }
+    friend Dual operator/(Dual a, Dual b) { return {a.v / b.v, (a.d - a.v / b.v * b.d) / b.v}; }
+    friend bool operator<(Dual a, Dual b) { return a.v < b.v; }
+    friend bool operator>(Dual a, Dual b) { return a.v > b.v; }
+    friend bool operator==(Dual a, Dual b) { return a.v == b.v; }
+};
+
+inline Dual sqrt(Dual a) {
+    return {std::sqrt(a.v), a.d / (2 * std::sqrt(a.v))};
+}
+inline Dual abs(Dual a) {
+    return a.v < 0 ? -a : a;
+}
+
+}  // namespace ulam

@@ -1,0 +1,147 @@
+#include "tests/support/path_scenes.h"
+
+#include "core/base/error.h"
+
+namespace ulam {
+namespace {
+
+const char* kSensor = R"({"type": "perspective", "fov": 55,
+    "to_world": [{"type": "lookat", "origin": [0.1, 1.1, 3.4], "target": [0, 0.9, 0], "up": [0, 1, 0]}]})";
+
+/// A wall: the rectangle [-1,1]² with normal +z, scaled by s, turned, and moved.
+Json wall(double s, const Json& axis, double angle, const Json& to, double reflectance) {
+    return {{"type", "rectangle"},
+            {"to_world",
+             {{{"type", "scale"}, {"value", s}},
+              {{"type", "rotate"}, {"axis", axis}, {"angle", angle}},
+              {{"type", "translate"}, {"value", to}}}},
+            {"bsdf", {{"type", "diffuse"}, {"reflectance", {reflectance, 0.7 * reflectance, 0.9 * reflectance}}}}};
+}
+
+Json ball(const Json& center, double radius, const Json& bsdf) {
+    return {{"type", "sphere"}, {"center", center}, {"radius", radius}, {"bsdf", bsdf}};
+}
+
+Json diffuse(double reflectance) {
+    return {{"type", "diffuse"}, {"reflectance", reflectance}};
+}
+
+Json lamp() {
+    Json light = wall(0.4, {1, 0, 0}, 90, {0.2, 1.95, 0.3}, 0.2);
+    light["emitter"] = {{"type", "area"}, {"radiance", {9, 8, 5}}};
+    return light;
+}
+
+Json floorAndBack() {
+    return {{"type", "scene"},
+            {"sensor", Json::parse(kSensor)},
+            {"floor", wall(1.5, {1, 0, 0}, -90, {0, 0, 0.5}, 0.7)},
+            {"back", wall(1.5, {1, 0, 0}, 0, {0, 1, -1}, 0.8)}};
+}
+
+Json room() {
+    Json scene = floorAndBack();
+    scene["left"] = wall(1.5, {0, 1, 0}, 90, {-1, 1, 0.5}, 0.6);
+    scene["right"] = wall(1.5, {0, 1, 0}, -90, {1, 1, 0.5}, 0.5);
+    scene["ceiling"] = wall(1.5, {1, 0, 0}, 90, {0, 2, 0.5}, 0.7);
+    return scene;
+}
+
+Json diffuseRoom() {
+    Json scene = room();
+    scene["lamp"] = lamp();
+    scene["ball"] = ball({-0.4, 0.35, -0.2}, 0.35, diffuse(0.6));
+    return scene;
+}
+
+Json glassAndMirror() {
+    Json scene = room();
+    scene["lamp"] = lamp();
+    scene["glass"] = ball({0.4, 0.4, 0.5}, 0.35, {{"type", "dielectric"}, {"specular_transmittance", {0.9, 1, 0.8}}});
+    scene["mirror"] =
+        ball({-0.45, 0.45, -0.3}, 0.4, {{"type", "conductor"}, {"eta", {0.2, 0.9, 1.1}}, {"k", {3.9, 2.4, 2.2}}});
+    scene["sheet"] = wall(0.35, {0, 1, 0}, 220, {0, 1.3, 0}, 0.5);
+    scene["sheet"]["bsdf"] = {{"type", "twosided"}, {"front", {{"type", "conductor"}}}, {"back", diffuse(0.6)}};
+    return scene;
+}
+
+Json pointLight() {
+    Json scene = room();
+    scene["light"] = {{"type", "point"}, {"position", {0.3, 1.6, 0.2}}, {"intensity", {3, 4, 5}}};
+    scene["glass"] = ball({0.3, 0.5, 0.2}, 0.3, {{"type", "dielectric"}});
+    return scene;
+}
+
+Json environment() {
+    Json scene = floorAndBack();
+    scene["sky"] = {{"type", "constant"}, {"radiance", {0.6, 0.8, 1}}};
+    scene["glass"] = ball({0.4, 0.5, 0.3}, 0.4, {{"type", "dielectric"}, {"int_ior", 1.33}});
+    scene["ball"] = ball({-0.5, 0.4, 0}, 0.4, diffuse(0.7));
+    return scene;
+}
+
+/// An octahedron.
+Json octahedron(const Imath::V3d& c, double r) {
+    Json positions = Json::array(), normals = Json::array();
+    for (int axis = 0; axis < 3; ++axis)
+        for (const double side : {-1.0, 1.0})
+            for (int i = 0; i < 3; ++i) {
+                normals.push_back(i == axis ? side : 0.0);
+                positions.push_back(c[i] + (i == axis ? side * r : 0.0));
+            }
+    Json triangles = Json::array();
+    for (const auto& t :
+         {std::array{1, 3, 5}, {3, 0, 5}, {0, 2, 5}, {2, 1, 5}, {3, 1, 4}, {0, 3, 4}, {2, 0, 4}, {1, 2, 4}})
+        for (const int i : t) triangles.push_back(i);
+    return {{"type", "mesh"},
+            {"positions", positions},
+            {"triangles", triangles},
+            {"normals", normals},
+            {"bsdf", diffuse(0.5)}};
+}
+
+Json manyLights() {
+    Json scene = floorAndBack();
+    scene["lamp"] = lamp();
+    scene["glow"] = ball({-0.7, 0.3, 0.4}, 0.2, diffuse(0.4));
+    scene["glow"]["emitter"] = {{"type", "area"}, {"radiance", {2, 1, 1}}};
+    scene["crystal"] = octahedron({0.6, 0.4, 0.2}, 0.3);
+    scene["crystal"].erase("normals");
+    scene["crystal"]["emitter"] = {{"type", "area"}, {"radiance", {1, 2, 1}}};
+    scene["bulb"] = {{"type", "point"}, {"position", {0, 1, 0.6}}, {"intensity", 0.7}};
+    scene["sky"] = {{"type", "constant"}, {"radiance", 0.3}};
+    scene["mirror"] = ball({0, 0.4, -0.4}, 0.35, {{"type", "conductor"}});
+    return scene;
+}
+
+Json shadingNormals() {
+    Json scene = room();
+    scene["lamp"] = lamp();
+    scene["smooth"] = octahedron({-0.2, 0.6, 0.1}, 0.55);
+    scene["lens"] = octahedron({0.6, 0.4, 0.6}, 0.35);
+    scene["lens"]["bsdf"] = {{"type", "dielectric"}};
+    return scene;
+}
+
+}  // namespace
+
+Scene buildScene(const Json& dictionary, const Json& film) {
+    return SceneDescription::fromNode(JsonNode(dictionary), "/nonexistent").build(film);
+}
+
+const std::vector<NamedScene>& pathScenes() {
+    static const std::vector<NamedScene> scenes = {
+        {"diffuse", diffuseRoom(), false, false},   {"glass_and_mirror", glassAndMirror(), true, false},
+        {"point_light", pointLight(), true, false}, {"environment", environment(), true, true},
+        {"many_lights", manyLights(), true, true},  {"shading_normals", shadingNormals(), true, false},
+    };
+    return scenes;
+}
+
+const NamedScene& pathScene(const std::string& name) {
+    for (const NamedScene& scene : pathScenes())
+        if (scene.name == name) return scene;
+    fail(ExitCode::Usage, "no test scene {}", name);
+}
+
+}  // namespace ulam
