@@ -69,7 +69,7 @@ bool connect(Tracing& tracing, const PathLimits& limits, const Subpath& light, i
     } else {
         yEnd = y;
         yEnd.lobe = Lobe::Smooth;
-        beforeY = Edge(y, light.vertex[s - 2]);
+        beforeY = light.back[s - 1];
         atY = scatter(scene, yEnd, beforeY.direction, edge.direction);
     }
     if (isBlack(atY.f)) return false;
@@ -82,7 +82,7 @@ bool connect(Tracing& tracing, const PathLimits& limits, const Subpath& light, i
     } else {
         zEnd = z;
         zEnd.lobe = Lobe::Smooth;
-        afterZ = Edge(z, camera.vertex[t - 2]);
+        afterZ = camera.back[t - 1];
         atZ = scatter(scene, zEnd, -edge.direction, afterZ.direction);
     }
     if (isBlack(atZ.f)) return false;
@@ -110,7 +110,7 @@ bool hitLight(Tracing& tracing, const PathLimits& limits, const Subpath& camera,
     const Scene& scene = tracing.scene();
     const Vertex& x0 = camera.vertex[t - 1];
     if (t < 2 || scene.emitterAt(x0) == kNone) return false;
-    const Edge edge(x0, camera.vertex[t - 2]);
+    const Edge& edge = camera.back[t - 1];
     const Emission e = emission(scene, x0, edge.direction);
     if (isBlack(e.radiance)) return false;
     out.contribution = camera.throughput[t - 1] * e.radiance;

@@ -4,13 +4,13 @@ namespace ulam {
 namespace {
 
 /// Takes the vertex in slot `size` into the walk. pdfW: density of the direction that led to it, Russian roulette included.
-void arrive(const Scene& scene, Subpath& p, const Spectrum& throughput, double pdfW) {
+void arrive(const Scene& scene, const PathLimits& limits, Subpath& p, const Spectrum& throughput, double pdfW) {
     const int i = p.size++;
-    const Edge edge(p.vertex[i - 1], p.vertex[i]);
+    p.back[i] = Edge(p.vertex[i], p.vertex[i - 1]);
     p.throughput[i] = throughput;
-    p.forward[i] = edge.toAreaB(pdfW);
+    p.forward[i] = p.back[i].toAreaA(pdfW);
     p.backward[i] = 0;
-    p.albedo[i] = p.vertex[i].onSurface() ? albedoAt(scene, p.vertex[i]) : 0;
+    p.albedo[i] = limits.hasRoulette() && p.vertex[i].onSurface() ? albedoAt(scene, p.vertex[i]) : 1;
 }
 
 }  // namespace
@@ -21,7 +21,7 @@ bool extendWalk(Tracing& tracing, const PathLimits& limits, From from, const Blo
     if (!v.onSurface()) return false;
     const double q = limits.continuation(i, p.albedo[i]);
     if (!(numbers[3] < q)) return false;
-    const Edge back(v, p.vertex[i - 1]);
+    const Edge& back = p.back[i];
     ScatteredDirection s;
     const bool scattered = sampleScattering(tracing.scene(), v, back.direction, from, numbers, s);
     const double pdf = scattered ? s.scattering.pdf(from) : 0;
@@ -35,7 +35,7 @@ bool extendWalk(Tracing& tracing, const PathLimits& limits, From from, const Blo
     }
     p.backward[i - 1] = back.toAreaB(s.scattering.reversePdf(from));
     const Spectrum throughput = p.throughput[i] * s.scattering.f * (cosine(v, s.direction) / (pdf * q));
-    arrive(tracing.scene(), p, throughput, pdf * q);
+    arrive(tracing.scene(), limits, p, throughput, pdf * q);
     return true;
 }
 
@@ -62,7 +62,7 @@ void walkFromLight(Tracing& tracing, const PathLimits& limits, int vertices, Num
     const bool hit = atInfinity ? tracing.nextFrom(ray.origin, ray.direction, p.vertex[1])
                                 : tracing.next(p.vertex[0], ray.direction, p.vertex[1]);
     if (!hit || !p.vertex[1].onSurface()) return;
-    arrive(scene, p, p.throughput[0] * e0.radiance * (cosine(p.vertex[0], ray.direction) / ray.pdf), ray.pdf);
+    arrive(scene, limits, p, p.throughput[0] * e0.radiance * (cosine(p.vertex[0], ray.direction) / ray.pdf), ray.pdf);
     while (p.size < vertices && extendWalk(tracing, limits, From::Light, numbers(NumberStream::Light, p.size), p)) {}
 }
 
@@ -78,7 +78,7 @@ void walkFromCamera(Tracing& tracing, const PathLimits& limits, int vertices, co
     const Vec3f w = sensor.direction(raster);
     const double importance = sensor.importance(w), pdf = sensor.directionPdf(w);
     if (!(pdf > 0) || !tracing.next(p.vertex[0], w, p.vertex[1])) return;
-    arrive(scene, p, p.throughput[0] * (importance * cosine(p.vertex[0], w) / pdf), pdf);
+    arrive(scene, limits, p, p.throughput[0] * (importance * cosine(p.vertex[0], w) / pdf), pdf);
     while (p.size < vertices && extendWalk(tracing, limits, From::Camera, numbers(NumberStream::Camera, p.size - 1), p)) {}
 }
 

@@ -20,12 +20,14 @@ struct PathLimits {
     /// Probability that a walk goes on at its vertex `index`: a function of the vertex and its index from the walk's own
     /// end only, so that densities stay local.
     double continuation(int index, double albedo) const { return index < rrDepth ? 1 : std::min(0.95, albedo); }
+    bool hasRoulette() const { return rrDepth < maxDepth; }
 };
 
 /// A walk's vertices, its own end first, and beside each vertex what the walk knows about it.
 struct Subpath {
     int size = 0;
     std::array<Vertex, kMaxVertices + 1> vertex;
+    std::array<Edge, kMaxVertices + 1> back;  ///< from the vertex to the one before it; from vertex 1 on
     /// Π f-factors / densities up to the arrival at the vertex; L_e and W_e included from vertex 1 on.
     std::array<Spectrum, kMaxVertices + 1> throughput;
     /// Area density of the vertex as this walk makes it, Russian roulette included.
@@ -33,7 +35,7 @@ struct Subpath {
     /// Area density of the vertex as a walk from the other end makes it, having come through the next two vertices of
     /// this walk; without Russian roulette, whose index counts from the other end.
     std::array<double, kMaxVertices + 1> backward;
-    std::array<double, kMaxVertices + 1> albedo;
+    std::array<double, kMaxVertices + 1> albedo;  ///< 1 where no walk plays Russian roulette
 
     Subpath() {}
 };

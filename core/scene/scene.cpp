@@ -9,7 +9,7 @@ namespace ulam {
 void Scene::finalize() {
     Imath::Box3f box;
     for (Shape& shape : shapes) {
-        shape.prepareSampling();
+        shape.prepare();
         if (const Mesh* mesh = std::get_if<Mesh>(&shape.geometry)) {
             for (const Vec3f& p : mesh->positions) box.extendBy(p);
         } else {

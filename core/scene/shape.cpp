@@ -3,22 +3,17 @@
 namespace ulam {
 namespace {
 
-Vec3f geometricNormal(const Mesh& mesh, uint32_t triangle) {
-    const auto& [i, j, k] = mesh.triangles[triangle];
-    const Vec3d a(mesh.positions[i]), b(mesh.positions[j]), c(mesh.positions[k]);
-    return Vec3f((b - a).cross(c - a).normalized());
-}
-
-double triangleArea(const Mesh& mesh, const std::array<uint32_t, 3>& t) {
+/// Along the geometric normal, as long as twice the area; in double, for slivers far from the origin.
+Vec3d areaVector(const Mesh& mesh, const std::array<uint32_t, 3>& t) {
     const Vec3d a(mesh.positions[t[0]]), b(mesh.positions[t[1]]), c(mesh.positions[t[2]]);
-    return (b - a).cross(c - a).length() / 2;
+    return (b - a).cross(c - a);
 }
 
 }  // namespace
 
 void Shape::setNormals(Vertex& v) const {
     if (const Mesh* mesh = std::get_if<Mesh>(&geometry)) {
-        v.normal = v.shadingNormal = geometricNormal(*mesh, v.primitive);
+        v.normal = v.shadingNormal = mesh->faceNormals[v.primitive];
         if (mesh->normals.empty()) return;
         const auto& [i, j, k] = mesh->triangles[v.primitive];
         const Vec3f n =
@@ -57,16 +52,22 @@ Sample2 Shape::invertPoint(const Vertex& v) const {
     return {triangles.invert(v.primitive, s.u), s.v};
 }
 
-void Shape::prepareSampling() {
+void Shape::prepare() {
     if (const Sphere* sphere = std::get_if<Sphere>(&geometry)) {
         area = 4 * kPi * sphere->radius * sphere->radius;
         return;
     }
-    const Mesh& mesh = std::get<Mesh>(geometry);
+    Mesh& mesh = std::get<Mesh>(geometry);
     std::vector<double> areas;
-    for (const auto& t : mesh.triangles) areas.push_back(triangleArea(mesh, t));
+    mesh.faceNormals.clear();
+    mesh.faceNormals.reserve(mesh.triangles.size());
     area = 0;
-    for (double a : areas) area += a;
+    for (const auto& t : mesh.triangles) {
+        const Vec3d n = areaVector(mesh, t);
+        mesh.faceNormals.emplace_back(n.normalized());
+        areas.push_back(n.length() / 2);
+        area += areas.back();
+    }
     if (emitter != kNone) triangles = DiscreteDistribution(areas);
 }
 

@@ -19,6 +19,7 @@ struct Mesh {
     std::vector<Vec3f> normals;
     std::vector<Vec2f> texcoords;
     std::vector<std::array<uint32_t, 3>> triangles;
+    std::vector<Vec3f> faceNormals;  ///< geometric, unit, one a triangle; filled by Shape::prepare()
 };
 
 struct Sphere {
@@ -42,8 +43,8 @@ struct Shape {
     /// A point uniform by area from two numbers (density 1 / area), and the numbers of a point.
     Vertex samplePoint(uint32_t shapeIndex, double u, double v) const;
     Sample2 invertPoint(const Vertex& v) const;
-    /// Sums up area (and the distribution over triangles).
-    void prepareSampling();
+    /// Face normals, area and, on emitters, the distribution over triangles: call once the geometry is there.
+    void prepare();
 };
 
 }  // namespace ulam

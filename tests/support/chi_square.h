@@ -26,7 +26,8 @@ Sample2 azimuthAndZ(const Vec3f& w);
 Vec3f directionOf(double azimuth, double z);
 
 /// Draws `samples` points (none: the sampler found nothing) and compares their counts per cell with the integral of the
-/// density. Returns what is wrong, with statistic and p; nothing if the samples follow the density.
+/// density, which must be defined on the border of the domain too. Returns what is wrong, with statistic and p; nothing if
+/// the samples follow the density.
 std::optional<std::string> misfit(const Domain& domain, const std::function<std::optional<Sample2>(Random&)>& sample,
                                   const std::function<double(double, double)>& density, uint64_t seed,
                                   int samples = 1'000'000);

@@ -38,7 +38,7 @@ Audited audited(const std::string& mutation, const std::string& sceneName, Space
     if (a.states.x.empty()) return a;
     a.structure = auditStructure(scene, subject, a.states, kKey, 0, 2000);
     a.balance = auditBalance(scene, subject, a.states, kKey, 0, 2000);
-    a.jacobian = judge(auditJacobian(scene, subject, a.states, kKey, 0, 400));
+    a.jacobian = judge(auditJacobian(scene, subject, a.states, kKey, 0, 1000));
     return a;
 }
 

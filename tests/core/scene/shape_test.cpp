@@ -15,7 +15,7 @@ Shape unequalTriangles() {
     Shape shape;
     shape.geometry = mesh;
     shape.emitter = 0;
-    shape.prepareSampling();
+    shape.prepare();
     return shape;
 }
 
@@ -23,7 +23,7 @@ Shape sphere(bool flipped) {
     Shape shape;
     shape.geometry = Sphere{{1, 2, 3}, 0.5f};
     shape.flipNormals = flipped;
-    shape.prepareSampling();
+    shape.prepare();
     return shape;
 }
 
@@ -91,6 +91,7 @@ TEST_CASE("shading normals are interpolated, geometric ones come from the windin
     mesh.normals = {normalize(Vec3f(0, 0, 1)), normalize(Vec3f(1, 0, 1)), normalize(Vec3f(0, 1, 1))};
     mesh.triangles = {{0, 1, 2}};
     shape.geometry = mesh;
+    shape.prepare();
     Vertex v{};
     v.uv = {0.5f, 0.25f};
     shape.setNormals(v);
@@ -100,6 +101,7 @@ TEST_CASE("shading normals are interpolated, geometric ones come from the windin
     SECTION("normals that cancel out leave the geometric one") {
         mesh.normals = {{0, 0, 0}, {0, 0, 1}, {0, 0, -1}};
         shape.geometry = mesh;
+        shape.prepare();
         v.uv = {0.5f, 0.5f};
         shape.setNormals(v);
         CHECK(near(v.shadingNormal, {0, 0, 1}));
