@@ -62,8 +62,8 @@ private:
     static bool isSpecular(const Scene& scene, const Subpath& walk) {
         const Vertex& v = walk.vertex[size_t(walk.size - 1)];
         if (!v.onSurface()) return false;
-        const Vec3f back = Frame(v.shadingNormal).toLocal(directionTo(v, walk.vertex[size_t(walk.size - 2)]));
-        return scene.materialAt(v).onSideOf(back, [](const auto& bsdf, bool) { return !bsdf.hasSmooth; });
+        const float cosTheta = dot(v.shadingNormal, directionTo(v, walk.vertex[size_t(walk.size - 2)]));
+        return scene.materialAt(v).onSideOf(cosTheta, [](const auto& bsdf, bool) { return !bsdf.hasSmooth; });
     }
 };
 

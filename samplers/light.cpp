@@ -22,25 +22,12 @@ public:
         BidirectionalOptions options;
         options.limits = parameters_.limits;
         options.techniques = {.hitLight = false, .nextEvent = false, .connect = false, .lightImage = true};
-        return std::make_unique<LightRun>(context, options);
+        auto run = std::make_unique<IndependentRun>(context, [&] { return makeBidirectionalSource(context.scene, options); });
+        run->noteBias(missedLight(context.scene, options.techniques));
+        return run;
     }
 
 private:
-    class LightRun : public IndependentRun {
-    public:
-        LightRun(const RunContext& context, const BidirectionalOptions& options)
-            : IndependentRun(context, [&] { return makeBidirectionalSource(context.scene, options); }) {
-            for (const Material& m : context.scene.materials) specular_ = specular_ || m.hasDelta();
-        }
-        void report(uint64_t units, RenderStatistics& statistics) const override {
-            IndependentRun::report(units, statistics);
-            if (specular_) statistics.biasLedger.push_back("particle tracing cannot join mirrors and glass to the lens: what the camera sees directly in them is black");
-        }
-
-    private:
-        bool specular_ = false;
-    };
-
     Parameters parameters_;
 };
 

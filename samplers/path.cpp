@@ -23,7 +23,9 @@ public:
         options.limits = parameters_.limits;
         options.heuristic = parameters_.heuristic == "power" ? Heuristic::Power : Heuristic::Balance;
         options.techniques = {.hitLight = true, .nextEvent = true, .connect = false, .lightImage = false};
-        return std::make_unique<IndependentRun>(context, [&] { return makeBidirectionalSource(context.scene, options); });
+        auto run = std::make_unique<IndependentRun>(context, [&] { return makeBidirectionalSource(context.scene, options); });
+        run->noteBias(missedLight(context.scene, options.techniques));
+        return run;
     }
 
 private:

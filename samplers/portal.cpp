@@ -98,7 +98,7 @@ public:
             if (choice[0] < share) {
                 w = openings_.sample(v.position, choice[0] / share, choice[1], choice[2]);
                 v.lobe = Lobe::Smooth;
-                s = scatter(scene, v, w, edge.direction);
+                s = scatter(scene, v, v.lobe, w, edge.direction);
             } else {
                 ScatteredDirection sampled;
                 if (!sampleScattering(scene, v, edge.direction, From::Camera, u, sampled)) return;
@@ -145,7 +145,7 @@ private:
         const Emission e = emission(scene, x0, edge.direction);
         if (isBlack(e.radiance)) return;
         v.lobe = Lobe::Smooth;
-        const Scattering s = scatter(scene, v, -edge.direction, toCamera);
+        const Scattering s = scatter(scene, v, Lobe::Smooth, -edge.direction, toCamera);
         if (isBlack(s.f) || !tracing_.visible(x0, v)) return;
         const double direct = light_.forward[0];
         const double q = depth + 1 <= limits_.maxDepth ? limits_.continuation(depth, albedoAt(scene, v)) : 0;
@@ -182,8 +182,10 @@ public:
         const Scene& scene = context.scene;
         if (scene.features.empty()) fail(ExitCode::InvalidConfig, "the sampler portal needs a scene with features, such as the generator grid_of_holes");
         const Openings openings(scene.features, scene.sensor->samplePosition({}).position, parameters_.opening, parameters_.reach);
-        return std::make_unique<IndependentRun>(
+        auto run = std::make_unique<IndependentRun>(
             context, [&] { return std::make_unique<PortalSource>(scene, parameters_.limits, openings, parameters_.share); });
+        run->noteBias(missedLight(scene, {.connect = false, .lightImage = false}));
+        return run;
     }
 
 private:

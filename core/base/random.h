@@ -1,11 +1,9 @@
 #pragma once
-// Counter-based random numbers: Philox4x32-10 (Salmon et al. 2011, "Parallel random numbers: as easy as 1, 2, 3").
-// A number is a function of (key, chain, step, block), so that it does not matter which thread asks for it, or when.
+// Counter-based random numbers: Philox4x32-10. A number is a function of (key, chain, step, block), so that it does not
+// matter which thread asks for it, or when.
 
-#include <Random123/philox.h>
+#include "core/base/philox.h"
 
-#include <array>
-#include <cstdint>
 #include <span>
 
 namespace ulam {
@@ -35,7 +33,7 @@ class Random {
 public:
     Random() = default;
     Random(RandomKey key, uint32_t chain, uint64_t step)
-        : key_{{key.low, key.high}}, counter_{{0, chain, uint32_t(step), uint32_t(step >> 32)}} {}
+        : key_{key.low, key.high}, counter_{0, chain, uint32_t(step), uint32_t(step >> 32)} {}
     /// The same stream with other numbers in the place of its first blocks: how audits force and displace single numbers.
     /// The script must outlive it.
     Random(RandomKey key, uint32_t chain, uint64_t step, std::span<const Block> script) : Random(key, chain, step) { script_ = script; }
@@ -45,10 +43,10 @@ public:
 
     /// The next four numbers; leftovers of earlier single draws are kept.
     Block nextBlock() {
-        if (counter_[0] < script_.size()) [[unlikely]] return script_[counter_[0]++];
-        const auto bits = r123::Philox4x32{}(counter_, key_);
-        ++counter_[0];
-        return {uniform(bits[0]), uniform(bits[1]), uniform(bits[2]), uniform(bits[3])};
+        const uint32_t block = counter_[0]++;
+        if (block < script_.size()) [[unlikely]] return script_[block];
+        if (block - first_ >= batch_.size()) drawBatch(block);
+        return batch_[block - first_];
     }
 
     double operator()() {
@@ -63,12 +61,18 @@ public:
     int index(int n) { return int((*this)() * n); }
 
 private:
-    // The middle of one of 2^32 cells: never 0 and never 1, so logs and divisions of a number are safe.
-    static double uniform(uint32_t bits) { return (bits + 0.5) * 0x1p-32; }
+    void drawBatch(uint32_t first) {
+        first_ = first;
+        const auto bits = philox::fourBlocks({first, counter_[1], counter_[2], counter_[3]}, key_);
+        const auto a = philox::uniform(bits[0]), b = philox::uniform(bits[1]), c = philox::uniform(bits[2]), d = philox::uniform(bits[3]);
+        for (int i = 0; i < 4; ++i) batch_[size_t(i)] = {a[i], b[i], c[i], d[i]};
+    }
 
-    r123::Philox4x32::key_type key_{};
-    r123::Philox4x32::ctr_type counter_{};
+    philox::Key key_{};
+    philox::Counter counter_{};
     std::span<const Block> script_;
+    std::array<Block, 4> batch_;
+    uint32_t first_ = ~0u - 8;  ///< number of the batch's first block; at first one that is never drawn
     Block buffer_;
     int used_ = 4;
 };

@@ -39,7 +39,7 @@ public:
     /// Fills what the kernel keeps about a chain's state; call after x was set from outside.
     void enter(Chain& chain) const;
 
-    /// One step of the chain. Returns false where Z(x) = 0: a null step, counted by the observer.
+    /// One step of the chain. Where Z(x) = 0 it is a null step, which the observer counts.
     void step(Chain& chain, Target& target, StepContext& context, StepObserver& observer);
 
     /// log r of a proposal whose target is evaluated (design: "the kernel's one formula"), for β = 1. `logTechnique` is

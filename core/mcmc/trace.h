@@ -23,12 +23,18 @@ public:
         draws_.resize(draws_.size() / 2);
         stride_ *= 2;
     }
-    void reserve() { draws_.reserve(kMost); }
+    /// The state before the first step; makes room, so that recording allocates nothing.
+    void start(const Sample& x) {
+        origin_ = x.splats[0].raster;
+        draws_.reserve(kMost);
+    }
 
+    const Vec2f& origin() const { return origin_; }  ///< raster position of the first state
     const std::vector<Draw>& draws() const { return draws_; }
 
 private:
     static constexpr size_t kMost = 256;
+    Vec2f origin_{0, 0};
     std::vector<Draw> draws_;
     uint64_t turn_ = 0, stride_ = 1;
 };

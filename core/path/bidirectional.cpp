@@ -2,6 +2,16 @@
 
 namespace ulam {
 
+std::optional<std::string> missedLight(const Scene& scene, const TechniqueSet& set) {
+    const bool specular = std::any_of(scene.materials.begin(), scene.materials.end(), [](const Material& m) { return m.hasDelta(); });
+    const bool points = std::any_of(scene.emitters.begin(), scene.emitters.end(), [](const Emitter& e) {
+        return dispatch(e, [](const auto& emitter) { return emitter.positionIsDelta; });
+    });
+    if (!set.hitLight && specular) return "walks from the light cannot join mirrors and glass to the lens: what the camera sees directly in them is black";
+    if (!set.connect && !set.lightImage && specular && points) return "walks from the camera cannot join mirrors and glass to a point light: its caustics are missing";
+    return {};
+}
+
 void BidirectionalSampler::join(Technique technique, Path& path) const {
     const auto [s, t] = technique;
     const Subpath& light = s == 1 && t >= 2 ? direct_ : light_;

@@ -4,6 +4,9 @@
 
 #include "core/path/densities.h"
 
+#include <optional>
+#include <string>
+
 namespace ulam {
 
 struct BidirectionalOptions {
@@ -11,6 +14,9 @@ struct BidirectionalOptions {
     TechniqueSet techniques;
     Heuristic heuristic = Heuristic::Balance;
 };
+
+/// The light that no technique of the set can carry in this scene, in words for the bias ledger; nothing if there is none.
+std::optional<std::string> missedLight(const Scene& scene, const TechniqueSet& techniques);
 
 /// One technique's part of a sample.
 struct Contribution {

@@ -14,17 +14,23 @@ double PathDensities::log(int s) const {
 
 double PathDensities::weight(int s, const TechniqueSet& set, Heuristic heuristic) const {
     const auto term = [heuristic](double ratio) { return heuristic == Heuristic::Balance ? ratio : ratio * ratio; };
-    const double own = direct(s);
-    double sum = 1, ratio = 1;
-    for (int i = s - 1; i >= 0; --i) {  // p_i / p_s
-        ratio *= fromCamera[i] / fromLight[i];
-        if (possible(i) && set.contains(i, size - i)) sum += term(ratio * (direct(i) / own));
-    }
-    ratio = 1;
     const int last = set.connect || set.lightImage ? size - 1 : 1;
+    // Two neighbouring techniques differ in the end that makes one vertex. All divisions at once: they do not depend on
+    // each other.
+    std::array<double, kMaxVertices> step;
+    for (int i = 0; i < s; ++i) step[i] = fromCamera[i] / fromLight[i];
+    for (int i = s; i < last; ++i) step[i] = fromLight[i] / fromCamera[i];
+
+    const double inverseOwn = 1 / direct(s);
+    double sum = 1, ratio = inverseOwn;  // p_i / p_s, but for what is direct in technique i
+    for (int i = s - 1; i >= 0; --i) {
+        ratio *= step[i];
+        if (possible(i) && set.contains(i, size - i)) sum += term(ratio * direct(i));
+    }
+    ratio = inverseOwn;
     for (int i = s + 1; i <= last; ++i) {
-        ratio *= fromLight[i - 1] / fromCamera[i - 1];
-        if (possible(i) && set.contains(i, size - i)) sum += term(ratio * (direct(i) / own));
+        ratio *= step[i - 1];
+        if (possible(i) && set.contains(i, size - i)) sum += term(ratio * direct(i));
     }
     return 1 / sum;
 }
@@ -61,16 +67,13 @@ bool connect(Tracing& tracing, const PathLimits& limits, const Subpath& light, i
 
     Scattering atY = Scattering::none(), atZ = Scattering::none();
     Edge beforeY = edge, afterZ = edge;
-    Vertex yEnd, zEnd;
     if (s == 1) {
         const Emission e = emission(scene, y, edge.direction);
         atY.f = e.radiance;
         atY.pdfToCamera = e.pdf;
     } else {
-        yEnd = y;
-        yEnd.lobe = Lobe::Smooth;
         beforeY = light.back[s - 1];
-        atY = scatter(scene, yEnd, beforeY.direction, edge.direction);
+        atY = scatter(scene, y, Lobe::Smooth, beforeY.direction, edge.direction);
     }
     if (isBlack(atY.f)) return false;
     if (t == 1) {
@@ -80,10 +83,8 @@ bool connect(Tracing& tracing, const PathLimits& limits, const Subpath& light, i
         atZ.f = Spectrum(scene.sensor->importance(-edge.direction));
         atZ.pdfToLight = scene.sensor->directionPdf(-edge.direction);
     } else {
-        zEnd = z;
-        zEnd.lobe = Lobe::Smooth;
         afterZ = camera.back[t - 1];
-        atZ = scatter(scene, zEnd, -edge.direction, afterZ.direction);
+        atZ = scatter(scene, z, Lobe::Smooth, -edge.direction, afterZ.direction);
     }
     if (isBlack(atZ.f)) return false;
     if (!tracing.visible(y, z)) return false;

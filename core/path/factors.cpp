@@ -29,7 +29,7 @@ bool evaluate(const Scene& scene, const Path& path, int first, int last, PathFac
             at = {Spectrum(scene.sensor->importance(w)), 0, scene.sensor->directionPdf(w)};
         } else {
             if (!path[i].onSurface()) return false;
-            at = scatter(scene, path[i], -factors.edge[i - 1].direction, factors.edge[i].direction);
+            at = scatter(scene, path[i], path[i].lobe, -factors.edge[i - 1].direction, factors.edge[i].direction);
         }
         if (isBlack(at.f)) return false;
     }

@@ -29,15 +29,29 @@ inline double shadingCorrection(const Vertex& v, const Vec3f& toLight) {
     return g > 0 ? std::abs(dot(v.shadingNormal, toLight)) / double(g) : 0;
 }
 
-inline Scattering scatter(const Scene& scene, const Vertex& v, const Vec3f& toLight, const Vec3f& toCamera) {
-    const Frame frame(v.shadingNormal);
-    Vec3f l = frame.toLocal(toLight), c = frame.toLocal(toCamera);
-    return scene.materialAt(v).onSideOf(l, [&](const auto& bsdf, bool mirrored) -> Scattering {
-        if (mirrored) l.z = -l.z, c.z = -c.z;
-        const Imath::Vec3<double> dl(l), dc(c);
-        const Spectrum f = bsdf.eval(dl, dc, v.lobe);
+/// Directions in the local frame of the shading normal at v, as the BSDF on their side sees them. Made only once the BSDF
+/// is known: what a formula does not use of it is never computed.
+class LocalFrame {
+public:
+    LocalFrame(const Vertex& v, bool mirrored) : frame_(v.shadingNormal), mirrored_(mirrored) {}
+    Vec3f toLocal(const Vec3f& w) const { return mirror(frame_.toLocal(w)); }
+    Vec3f toWorld(const Vec3f& w) const { return frame_.toWorld(mirror(w)); }
+
+private:
+    Vec3f mirror(const Vec3f& w) const { return {w.x, w.y, mirrored_ ? -w.z : w.z}; }
+
+    Frame frame_;
+    bool mirrored_;
+};
+
+/// Scattering at v by a given lobe; both directions point away from v.
+inline Scattering scatter(const Scene& scene, const Vertex& v, Lobe lobe, const Vec3f& toLight, const Vec3f& toCamera) {
+    return scene.materialAt(v).onSideOf(dot(v.shadingNormal, toLight), [&](const auto& bsdf, bool mirrored) -> Scattering {
+        const LocalFrame frame(v, mirrored);
+        const Imath::V3d l(frame.toLocal(toLight)), c(frame.toLocal(toCamera));
+        const Spectrum f = bsdf.eval(l, c, lobe);
         if (isBlack(f)) return Scattering::none();
-        return {f * shadingCorrection(v, toLight), bsdf.pdf(dl, dc, v.lobe), bsdf.pdf(dc, dl, v.lobe)};
+        return {f * shadingCorrection(v, toLight), bsdf.pdf(l, c, lobe), bsdf.pdf(c, l, lobe)};
     });
 }
 
@@ -50,21 +64,18 @@ struct ScatteredDirection {
 /// `lobe` given, that lobe is taken instead of a random one.
 inline bool sampleScattering(const Scene& scene, Vertex& v, const Vec3f& from, From walk, const Block& u, ScatteredDirection& out,
                              std::optional<Lobe> lobe = std::nullopt) {
-    const Frame frame(v.shadingNormal);
-    Vec3f known = frame.toLocal(from);
-    return scene.materialAt(v).onSideOf(known, [&](const auto& bsdf, bool mirrored) {
-        if (mirrored) known.z = -known.z;
+    return scene.materialAt(v).onSideOf(dot(v.shadingNormal, from), [&](const auto& bsdf, bool mirrored) {
+        const LocalFrame frame(v, mirrored);
+        const Vec3f known = frame.toLocal(from);
         const auto sampled = lobe ? bsdf.sampleLobe(known, *lobe, u) : bsdf.sample(known, u);
         if (!sampled) return false;
         v.lobe = sampled->lobe;
-        Vec3f to = sampled->to;
-        const Imath::Vec3<double> dk(known), dt(to);
+        const Imath::V3d dk(known), dt(sampled->to);
         const auto& l = walk == From::Light ? dk : dt;
         const auto& c = walk == From::Light ? dt : dk;
         const Spectrum f = bsdf.eval(l, c, v.lobe);
         if (isBlack(f)) return false;
-        if (mirrored) to.z = -to.z;
-        out.direction = frame.toWorld(to);
+        out.direction = frame.toWorld(sampled->to);
         const Vec3f& toLight = walk == From::Light ? from : out.direction;
         out.scattering = {f * shadingCorrection(v, toLight), bsdf.pdf(l, c, v.lobe), bsdf.pdf(c, l, v.lobe)};
         return true;
@@ -73,21 +84,17 @@ inline bool sampleScattering(const Scene& scene, Vertex& v, const Vec3f& from, F
 
 /// Probability that a walk which arrived along `from` and left along `to` chose the lobe marked on v.
 inline double lobeProbability(const Scene& scene, const Vertex& v, const Vec3f& from, const Vec3f& to) {
-    const Frame frame(v.shadingNormal);
-    Vec3f a = frame.toLocal(from), b = frame.toLocal(to);
-    return scene.materialAt(v).onSideOf(a, [&](const auto& bsdf, bool mirrored) {
-        if (mirrored) a.z = -a.z, b.z = -b.z;
-        return bsdf.probability(Imath::V3d(a), Imath::V3d(b), v.lobe);
+    return scene.materialAt(v).onSideOf(dot(v.shadingNormal, from), [&](const auto& bsdf, bool mirrored) {
+        const LocalFrame frame(v, mirrored);
+        return bsdf.probability(Imath::V3d(frame.toLocal(from)), Imath::V3d(frame.toLocal(to)), v.lobe);
     });
 }
 
 /// The numbers that make sampleScattering() at v choose `to`; those that do not matter stay as they are.
 inline bool invertScattering(const Scene& scene, const Vertex& v, const Vec3f& from, const Vec3f& to, Block& u) {
-    const Frame frame(v.shadingNormal);
-    Vec3f a = frame.toLocal(from), b = frame.toLocal(to);
-    return scene.materialAt(v).onSideOf(a, [&](const auto& bsdf, bool mirrored) {
-        if (mirrored) a.z = -a.z, b.z = -b.z;
-        return bsdf.invert(a, b, v.lobe, u);
+    return scene.materialAt(v).onSideOf(dot(v.shadingNormal, from), [&](const auto& bsdf, bool mirrored) {
+        const LocalFrame frame(v, mirrored);
+        return bsdf.invert(frame.toLocal(from), frame.toLocal(to), v.lobe, u);
     });
 }
 

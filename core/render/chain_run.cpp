@@ -9,11 +9,12 @@ namespace ulam {
 namespace {
 
 // Streams of random numbers beside the chains' own, which are numbered from 0.
-constexpr uint32_t kBootstrapStream = 0xf0000000u, kResamplingStream = 0xf0000001u;
+constexpr uint32_t kBootstrapStream = 0xf0000000u, kResamplingStream = 0xf0000001u, kShuffleStream = 0xf0000002u,
+                   kPilotStream = 0xf0000003u;
 // Timing every step would cost more than a cheap step.
 constexpr uint64_t kTimedEvery = 32;
 
-constexpr uint64_t kSmallestBootstrap = 20'000, kLargestBootstrap = 20'000'000;
+constexpr uint64_t kPilot = 10'000, kSmallestBootstrap = 20'000, kLargestBootstrap = 20'000'000;
 constexpr double kBootstrapShare = 0.1;
 
 bool neverStop(int) { return false; }
@@ -56,7 +57,7 @@ struct ChainRun::Worker : StepObserver {
         const double alpha = info.acceptance;
         const bool large = run.deposit_ == Deposit::Kelemen && run.mix_[size_t(info.mutation)].mutation->isLargeStep();
         pending += weight(x, 1 - alpha);
-        const double proposed = weight(y, alpha + large);
+        const double proposed = weight(y, alpha + (large ? run.pilotNormalization_ / run.normalization_ : 0));
         const Vec2f jump = y.splats[0].raster - x.splats[0].raster;
         s.squaredJump += alpha * double(jump.length2());
         if (!info.accepted) {
@@ -74,7 +75,7 @@ struct ChainRun::Worker : StepObserver {
     /// The weight of one deposit of f/π, in units of b.
     double weight(const Sample& x, double w) const {
         if (run.deposit_ == Deposit::ExpectedValues) return w;
-        return w / (1 + largeStepProbability * run.normalization_ / std::exp(x.logTarget));
+        return w / (1 + largeStepProbability * run.pilotNormalization_ / std::exp(x.logTarget));
     }
 
     void deposit(const Sample& x, double w) {
@@ -120,50 +121,64 @@ ChainRun::ChainRun(const RunContext& context, const ChainParameters& parameters,
 
 ChainRun::~ChainRun() = default;
 
-void ChainRun::prepare() {
-    bootstrap();
+void ChainRun::prepare(const StopFunction& stop) {
+    if (deposit_ == Deposit::Kelemen || parameters_.bootstrap == 0) pilot(stop);
+    bootstrap(stop);
     seedChains();
 }
 
-void ChainRun::bootstrap() {
-    const auto run = [&](uint64_t until) {
-        const uint64_t from = weights_.size();
-        weights_.resize(until);
-        forEachChunk(context_.workers, from, until, 256, neverStop, [&](int worker, uint64_t begin, uint64_t end) {
-            Target& target = *workers_[size_t(worker)]->target;
-            for (uint64_t i = begin; i < end; ++i) {
-                Random random(context_.key, kBootstrapStream, i);
-                const double w = target.bootstrapWeight(random);
-                weights_[i] = std::isfinite(w) ? w : 0;
-            }
-        });
-    };
-    if (parameters_.bootstrap > 0) {
-        run(uint64_t(parameters_.bootstrap));
-    } else {
-        const auto start = std::chrono::steady_clock::now();
-        run(kSmallestBootstrap);
+/// Weights of bidirectional samples [first, last), or of as many as were made until the stop.
+std::vector<double> ChainRun::weigh(uint32_t stream, uint64_t first, uint64_t last, const StopFunction& stop) {
+    std::vector<double> weights(last - first);
+    std::atomic<uint64_t> notFinite = 0;
+    const uint64_t end = forEachChunk(context_.workers, first, last, 256, stop, [&](int worker, uint64_t from, uint64_t to) {
+        Target& target = *workers_[size_t(worker)]->target;
+        for (uint64_t i = from; i < to; ++i) {
+            Random random(context_.key, stream, i);
+            double& w = weights[i - first];
+            w = target.bootstrapWeight(random);
+            if (!std::isfinite(w)) w = 0, ++notFinite;
+        }
+    });
+    weights.resize(end - first);
+    bootstrapNotFinite_ += notFinite;
+    return weights;
+}
+
+void ChainRun::pilot(const StopFunction& stop) {
+    const auto start = std::chrono::steady_clock::now();
+    const uint64_t count = parameters_.bootstrap > 0 ? std::min(kPilot, uint64_t(parameters_.bootstrap)) : kPilot;
+    const std::vector<double> weights = weigh(kPilotStream, 0, count, stop);
+    pilotSeconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    pilotSamples_ = weights.size();
+    for (const double w : weights) pilotNormalization_ += w / double(weights.size());
+}
+
+void ChainRun::bootstrap(const StopFunction& stop) {
+    uint64_t count = uint64_t(parameters_.bootstrap);
+    if (count == 0) {
         double n = kBootstrapShare * context_.expectedUnits;
         if (context_.expectedSeconds > 0) {
-            const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-            const double affordable = kBootstrapShare * context_.expectedSeconds / took * double(kSmallestBootstrap);
+            const double affordable = kBootstrapShare * context_.expectedSeconds / pilotSeconds_ * double(kPilot);
             n = context_.expectedUnits > 0 ? std::min(n, affordable) : affordable;
         }
-        run(uint64_t(std::clamp(n, double(kSmallestBootstrap), double(kLargestBootstrap))));
+        count = uint64_t(std::clamp(n, double(kSmallestBootstrap), double(kLargestBootstrap)));
     }
+    weights_ = weigh(kBootstrapStream, 0, count, stop);
     double sum = 0, squares = 0;
     for (double w : weights_) sum += w;
     const double n = double(weights_.size());
-    normalization_ = sum / n;
+    normalization_ = n > 0 ? sum / n : 0;
     for (double w : weights_) squares += (w - normalization_) * (w - normalization_);
-    normalizationStandardError_ = std::sqrt(squares / (n * (n - 1)));
+    normalizationStandardError_ = n > 1 ? std::sqrt(squares / (n * (n - 1))) : 0;
     bootstrapSamples_ = weights_.size();
-    if (!(sum > 0))
+    if (!(sum > 0) && weights_.size() == count)  // and not stopped early
         fail(ExitCode::InvalidConfig, "none of {} bidirectional samples carried light to the camera: is the camera inside a wall, or the light shut off?",
              weights_.size());
 }
 
 void ChainRun::seedChains() {
+    if (!(normalization_ > 0)) return;
     // Systematic resampling: the n-th chain starts at the sample in which the running sum passes (n + offset) · step.
     const size_t count = size_t(parameters_.chains);
     std::vector<uint64_t> source(count);
@@ -181,6 +196,10 @@ void ChainRun::seedChains() {
     }
     while (seeded < count) source[seeded++] = lastPositive;
     weights_ = {};
+    // Each chain alone is drawn by weight only once their order is forgotten; without this the first chains, which get
+    // the last and incomplete round of work, would all come from the beginning of the bootstrap.
+    Random shuffle(context_.key, kShuffleStream, 0);
+    for (size_t i = count; i > 1; --i) std::swap(source[i - 1], source[std::min(i - 1, size_t(shuffle() * double(i)))]);
 
     chains_.resize(count);
     std::atomic<uint64_t> lost = 0;
@@ -197,7 +216,7 @@ void ChainRun::seedChains() {
                 continue;
             }
             chain.feature = Worker::featureOf(chain.x);
-            chains_[c]->trace.reserve();
+            chains_[c]->trace.start(chain.x);
             w.kernel.enter(chain);
         }
     });
@@ -211,26 +230,33 @@ void ChainRun::work(int worker, uint64_t begin, uint64_t end) {
     const uint64_t turn = begin / chunk(), round = turn / chains_.size();
     ChainSlot& slot = *chains_[turn % chains_.size()];
     const uint64_t from = round * chunk() + begin % chunk();
-    while (slot.steps.load(std::memory_order_acquire) != from) std::this_thread::yield();
+    while (slot.steps.load(std::memory_order_acquire) != from) {
+        if (failed_) return;  // the worker that has this chain does not come back
+        std::this_thread::yield();
+    }
     Chain& chain = slot.chain;
     w.pending = 0;
     w.feature = chain.feature;
-    for (uint64_t i = begin; i < end; ++i) {
-        Random random(context_.key, chain.index, chain.step);
-        StepContext context{random, w.target->tracing(), limits_};
-        if (i % kTimedEvery != 0) {
-            w.kernel.step(chain, *w.target, context, w);
-            continue;
-        }
-        const auto start = std::chrono::steady_clock::now();
-        w.kernel.step(chain, *w.target, context, w);
-        const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-        if (w.last >= 0) w.statistics[size_t(w.last)].seconds += seconds * double(kTimedEvery);
+    try {
+        for (uint64_t i = begin; i < end; ++i) step(w, chain, i % kTimedEvery == 0);
+    } catch (...) {
+        failed_ = true;
+        throw;
     }
     if (w.pending > 0) w.deposit(chain.x, w.pending);
     chain.feature = w.feature;
     if (end % chunk() == 0) slot.trace.record(chain.x, chain.feature);
     slot.steps.store(from + (end - begin), std::memory_order_release);
+}
+
+void ChainRun::step(Worker& w, Chain& chain, bool timed) {
+    Random random(context_.key, chain.index, chain.step);
+    StepContext context{random, w.target->tracing(), limits_};
+    if (!timed) return w.kernel.step(chain, *w.target, context, w);
+    const auto start = std::chrono::steady_clock::now();
+    w.kernel.step(chain, *w.target, context, w);
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    if (w.last >= 0) w.statistics[size_t(w.last)].seconds += seconds * double(kTimedEvery);
 }
 
 Image ChainRun::develop(uint64_t units) const {
@@ -247,7 +273,7 @@ uint64_t ChainRun::rays() const {
 
 void ChainRun::report(uint64_t units, RenderStatistics& s) const {
     s.rays = rays();
-    s.samples = bootstrapSamples_;
+    s.samples = pilotSamples_ + bootstrapSamples_;
     s.mutations = units;
     s.chains = chains_.size();
     s.normalization = normalization_;
@@ -265,8 +291,10 @@ void ChainRun::report(uint64_t units, RenderStatistics& s) const {
         s.featureJumps += w->jumps;
         nullSteps += w->nullSteps;
     }
-    for (const FixedSum& e : energy) s.featureEnergy.push_back(e.value() * normalization_ / double(units));
+    if (bootstrapNotFinite_ > 0) s.nonFinite["bootstrap"] = bootstrapNotFinite_;
+    for (const FixedSum& e : energy) s.featureEnergy.push_back(units > 0 ? e.value() * normalization_ / double(units) : 0);
     for (const auto& slot : chains_) s.traces.push_back(slot->trace);
+    s.diagnostics["pilot_samples"] = pilotSamples_;
     s.diagnostics["bootstrap_samples"] = bootstrapSamples_;
     s.diagnostics["null_steps"] = nullSteps;
     s.diagnostics["seeds_lost_to_rounding"] = seedsLost_;

@@ -25,7 +25,11 @@ struct ChainParameters {
 /// How steps turn into an image.
 enum class Deposit {
     ExpectedValues,  ///< α to the proposal, 1 − α to the current state (Veach 1997, §11.3.3)
-    Kelemen,         ///< large steps also count as independent samples (Kelemen et al. 2002, §4)
+    /// Large steps also count as independent samples (Kelemen et al. 2002, §4). With p the probability of a large step and
+    /// b0 an independent estimate of b, a state weighs π / (π + p b0) as one of the chain's and p b0 / (π + p b0) as a
+    /// large step's: whatever b0 is, the two add up to the image. With the b of the bootstrap itself, from which the
+    /// chains are drawn, the weights would depend on the states they weigh.
+    Kelemen,
 };
 
 using TargetMaker = std::function<std::unique_ptr<Target>()>;
@@ -36,7 +40,7 @@ public:
              const TargetMaker& makeTarget);
     ~ChainRun() override;
 
-    void prepare() override;
+    void prepare(const StopFunction& stop) override;
     /// Steps a chain takes before the next one's turn: long enough to keep its state in the cache.
     uint64_t chunk() const override { return 64; }
     void work(int worker, uint64_t begin, uint64_t end) override;
@@ -48,8 +52,11 @@ private:
     struct Worker;
     struct ChainSlot;
 
-    void bootstrap();
+    std::vector<double> weigh(uint32_t stream, uint64_t first, uint64_t last, const StopFunction& stop);
+    void pilot(const StopFunction& stop);
+    void bootstrap(const StopFunction& stop);
     void seedChains();
+    void step(Worker& worker, Chain& chain, bool timed);
 
     RunContext context_;
     ChainParameters parameters_;
@@ -59,8 +66,11 @@ private:
     std::vector<std::unique_ptr<Worker>> workers_;
     std::vector<std::unique_ptr<ChainSlot>> chains_;
     std::vector<double> weights_;  ///< of the bootstrap samples; empty once the chains are seeded
-    uint64_t bootstrapSamples_ = 0, seedsLost_ = 0;
+    uint64_t pilotSamples_ = 0, bootstrapSamples_ = 0, bootstrapNotFinite_ = 0, seedsLost_ = 0;
+    double pilotSeconds_ = 0;
+    double pilotNormalization_ = 0;  ///< b from samples that seed nothing
     double normalization_ = 0, normalizationStandardError_ = 0;
+    std::atomic<bool> failed_ = false;  ///< a step threw; workers that wait for its chain give up
 };
 
 }  // namespace ulam

@@ -40,7 +40,7 @@ public:
         RenderResult result;
         start_ = Clock::now();
         const double cpu = cpuSeconds();
-        run_->prepare();
+        run_->prepare(stopAt(options_.budget.seconds.value_or(std::numeric_limits<double>::infinity()), seeded_));
         const double seeding = seconds();
         const uint64_t seedingRays = run_->rays();
         for (int n = options_.snapshots; n >= 0 && !stopped_; --n) {
@@ -60,6 +60,7 @@ public:
         result.units = units_;
         result.image = run_->develop(units_);
         run_->report(units_, result.statistics);
+        result.statistics.biasLedger = run_->biasLedger();
         result.statistics.seedingSeconds = seeding;
         result.statistics.seedingRays = seedingRays;
         return result;
@@ -82,16 +83,21 @@ private:
     /// Hands out chunks in order until the limit or the deadline; what is done afterwards is exactly [0, units_).
     void doUnits(uint64_t limit, double deadline) {
         std::atomic<uint64_t> done = units_;
-        const auto stop = [&](int worker) {
+        units_ = forEachChunk(options_.threads, units_, limit, run_->chunk(), stopAt(deadline, done),
+                              [&](int worker, uint64_t begin, uint64_t end) {
+                                  run_->work(worker, begin, end);
+                                  done.fetch_add(end - begin, std::memory_order_relaxed);
+                              });
+    }
+
+    /// Stops at a signal and at the deadline; reports progress on the way. `done` must outlive it.
+    StopFunction stopAt(double deadline, const std::atomic<uint64_t>& done) {
+        return [this, deadline, &done](int worker) {
             if (options_.interrupt && options_.interrupt->load(std::memory_order_relaxed)) stopped_ = true;
             const double now = seconds();
             report(worker, now, done.load(std::memory_order_relaxed));
             return stopped_ || now >= deadline;
         };
-        units_ = forEachChunk(options_.threads, units_, limit, run_->chunk(), stop, [&](int worker, uint64_t begin, uint64_t end) {
-            run_->work(worker, begin, end);
-            done.fetch_add(end - begin, std::memory_order_relaxed);
-        });
     }
 
     void report(int worker, double now, uint64_t done) {
@@ -111,6 +117,7 @@ private:
     Clock::time_point start_;
     double developing_ = 0, lastReport_ = 0;
     std::atomic<bool> stopped_ = false;
+    const std::atomic<uint64_t> seeded_ = 0;  ///< units done while seeding: none
 };
 
 }  // namespace

@@ -127,7 +127,7 @@ void IndependentRun::report(uint64_t units, RenderStatistics& statistics) const 
         if (w->film.nonFinite() > 0) statistics.nonFinite["contribution"] += w->film.nonFinite();
         for (size_t i = 0; i < energy.size(); ++i) energy[i].add(w->featureEnergy[i]);
     }
-    for (const FixedSum& e : energy) statistics.featureEnergy.push_back(e.value() / double(units));
+    for (const FixedSum& e : energy) statistics.featureEnergy.push_back(units > 0 ? e.value() / double(units) : 0);
     if (!workers_[0]->techniques) return;
     Film film = workers_[0]->film;
     TechniqueFilms techniques = *workers_[0]->techniques;

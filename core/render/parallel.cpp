@@ -8,7 +8,7 @@
 
 namespace ulam {
 
-uint64_t forEachChunk(int workers, uint64_t first, uint64_t limit, uint64_t chunk, const std::function<bool(int)>& stop,
+uint64_t forEachChunk(int workers, uint64_t first, uint64_t limit, uint64_t chunk, const StopFunction& stop,
                       const std::function<void(int, uint64_t, uint64_t)>& work) {
     std::atomic<uint64_t> next = first / chunk;
     std::atomic<uint64_t> done = first;

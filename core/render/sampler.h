@@ -4,10 +4,12 @@
 
 #include "core/config/registry.h"
 #include "core/path/walk.h"
+#include "core/render/parallel.h"
 #include "core/render/statistics.h"
 #include "core/scene/scene.h"
 
 #include <memory>
+#include <optional>
 
 namespace ulam {
 
@@ -26,8 +28,9 @@ class SamplerRun {
 public:
     virtual ~SamplerRun() = default;
 
-    /// Before the first unit: seeding, normalisation. May use context.workers threads.
-    virtual void prepare() {}
+    /// Before the first unit: seeding, normalisation. May use context.workers threads; what it has when `stop` says so is
+    /// what it goes on with.
+    virtual void prepare(const StopFunction& /*stop*/) {}
     /// Units handed out at a time, and the alignment of their ranges.
     virtual uint64_t chunk() const = 0;
     /// Does units [begin, end) of one chunk.
@@ -37,6 +40,15 @@ public:
     /// Rays traced so far by all workers; called between rounds of work.
     virtual uint64_t rays() const = 0;
     virtual void report(uint64_t units, RenderStatistics& statistics) const = 0;
+
+    /// A bias that the sampler knows of, for the result; nothing: none.
+    void noteBias(const std::optional<std::string>& bias) {
+        if (bias) biasLedger_.push_back(*bias);
+    }
+    const std::vector<std::string>& biasLedger() const { return biasLedger_; }
+
+private:
+    std::vector<std::string> biasLedger_;
 };
 
 class Sampler {

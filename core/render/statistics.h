@@ -28,7 +28,7 @@ struct RenderStatistics {
     std::vector<double> featureEnergy;
     uint64_t featureJumps = 0;
     Json diagnostics = Json::object();          ///< further numbers of the sampler
-    std::vector<ChainTrace> traces;             ///< of the chains, in the order of their seeds
+    std::vector<ChainTrace> traces;             ///< of the chains
     std::map<std::string, Image> extraImages;   ///< e.g. per-technique images, by name
 };
 

@@ -25,10 +25,10 @@ struct Material {
     Bsdf front;
     std::optional<Bsdf> back;
 
-    /// Calls `function(bsdf, mirrored)` with the BSDF on the side of a local direction.
+    /// Calls `function(bsdf, mirrored)` with the BSDF on the side of a direction with this cosine to the shading normal.
     template <class Function>
-    decltype(auto) onSideOf(const Vec3f& w, Function&& function) const {
-        const bool mirrored = back && !(w.z > 0);
+    decltype(auto) onSideOf(float cosTheta, Function&& function) const {
+        const bool mirrored = back && !(cosTheta > 0);
         return dispatch(mirrored ? *back : front, [&](const auto& bsdf) { return function(bsdf, mirrored); });
     }
 

@@ -219,6 +219,7 @@ Mesh PlyReader::read() {
         // Before anything is allocated or looped over.
         checkRoom(element.count, smallestSize(element), element.name);
         if (element.name == "vertex") {
+            if (!mesh_.positions.empty()) error("the vertices stand in two elements");
             vertices(element);
         } else if (element.name == "face") {
             faces(element);

@@ -1,15 +1,32 @@
 #include "experiments/engine/mixing.h"
 
+#include <algorithm>
+
 #include "experiments/statistics/chains.h"
 
 namespace ulam {
 namespace {
 
-// Neighbouring chains come from neighbouring bootstrap samples, often the same one.
+// Chains that started close to each other on the image, in the place of the common starting points of Margossian et al.:
+// what sets such groups apart has not mixed.
 constexpr size_t kChainsPerSuperchain = 10;
 constexpr size_t kShortestTrace = 8;
 
 Json finite(double x) { return std::isfinite(x) ? Json(x) : Json(); }
+
+/// Place of a pixel along the Z-order curve, on which neighbours are neighbours in the image.
+uint64_t zOrder(const Vec2f& raster) {
+    const auto x = uint64_t(std::max(0.0f, raster.x)), y = uint64_t(std::max(0.0f, raster.y));
+    uint64_t code = 0;
+    for (int bit = 0; bit < 24; ++bit) code |= (x >> bit & 1) << (2 * bit) | (y >> bit & 1) << (2 * bit + 1);
+    return code;
+}
+
+bool isConstant(const std::vector<statistics::Trace>& values) {
+    return std::all_of(values.begin(), values.end(), [&](const statistics::Trace& trace) {
+        return std::all_of(trace.begin(), trace.end(), [&](double v) { return v == values[0][0]; });
+    });
+}
 
 }  // namespace
 
@@ -17,13 +34,18 @@ Json mixing(const std::vector<ChainTrace>& traces, double seconds) {
     size_t length = traces.empty() ? 0 : traces[0].draws().size();
     for (const ChainTrace& t : traces) length = std::min(length, t.draws().size());
     if (length < kShortestTrace) return nullptr;
+    std::vector<const ChainTrace*> sorted;
+    for (const ChainTrace& t : traces) sorted.push_back(&t);
+    std::stable_sort(sorted.begin(), sorted.end(),
+                     [](const ChainTrace* a, const ChainTrace* b) { return zOrder(a->origin()) < zOrder(b->origin()); });
     const size_t chains = traces.size() / kChainsPerSuperchain * kChainsPerSuperchain;
     Json out = Json::object();
     out["draws_per_chain"] = length;
     for (int scalar = 0; scalar < ChainTrace::kScalars; ++scalar) {
         std::vector<statistics::Trace> values(traces.size(), statistics::Trace(length));
         for (size_t c = 0; c < traces.size(); ++c)
-            for (size_t i = 0; i < length; ++i) values[c][i] = double(traces[c].draws()[i][size_t(scalar)]);
+            for (size_t i = 0; i < length; ++i) values[c][i] = double(sorted[c]->draws()[i][size_t(scalar)]);
+        if (isConstant(values)) continue;  // such as the path length of states that are whole samples
         const double size = statistics::effectiveSampleSize(values);
         Json entry = {{"split_rhat", finite(statistics::splitRhat(values))}, {"ess", finite(size)}, {"ess_per_second", finite(size / seconds)}};
         entry["nested_rhat"] =

@@ -88,15 +88,19 @@ std::vector<statistics::MeanEstimate> exactShares(const std::vector<double>& ene
     return shares;
 }
 
-/// NAME.features.json beside NAME.exr: an energy for each of the scene's features.
+/// NAME.features.json beside NAME.exr: what result.json of a reference calls feature_shares.
 std::vector<statistics::MeanEstimate> companionShares(const fs::path& image, const Features& features) {
     const fs::path file = fs::path(image).replace_extension(".features.json");
     if (features.empty() || !fs::exists(file)) return {};
     const JsonDocument document = JsonDocument::fromFile(file);
     document.root().allowOnly("feature", features.names);
-    std::vector<double> energies;
-    for (const std::string& name : features.names) energies.push_back(document.root().at(name).number());
-    return exactShares(energies);
+    std::vector<statistics::MeanEstimate> shares;
+    for (const std::string& name : features.names) {
+        const JsonNode share = document.root().at(name);
+        shares.push_back({share.at("mean").number(), share.at("variance_of_mean").number()});
+        if (const auto degrees = share.find("degrees")) shares.back().degrees = degrees->number();
+    }
+    return shares;
 }
 
 void checkSize(const PlannedReference& reference, const Image& image, const fs::path& file) {

@@ -35,6 +35,17 @@ std::string snapshotFile(std::size_t index) {
     return fmt::format("snapshots/s{:02}.exr", index);
 }
 
+/// Sampler and budget that make the same image again, whatever ended the run.
+Json repetition(const RunIdentity& run, const RenderResult& result) {
+    Json sampler = run.parameters;
+    // What a time budget allowed.
+    if (sampler.contains("bootstrap")) sampler["bootstrap"] = result.statistics.diagnostics["bootstrap_samples"];
+    const double pixels = double(result.image.width) * result.image.height;
+    return {{"sampler", sampler},
+            {"budget", result.statistics.chains > 0 ? Json{{"mutations", result.units}}
+                                                    : Json{{"spp", double(result.units) / pixels}}}};
+}
+
 }  // namespace
 
 Json resolveSampler(const JsonNode& sampler) {
@@ -93,6 +104,7 @@ Json resultJson(const RunIdentity& run, const RenderResult& result, const Featur
         {"non_finite", s.nonFinite},
         {"bias_ledger", s.biasLedger},
         {"diagnostics", s.diagnostics},
+        {"repeat", repetition(run, result)},
         {"mixing", mixing(s.traces, result.wallSeconds)},
         {"snapshots", snapshots},
         {"width", result.image.width},

@@ -61,6 +61,16 @@ class CliTest(unittest.TestCase):
 
 
 class Usage(CliTest):
+    def test_a_time_limited_render_can_be_repeated_as_work(self):
+        for sampler in ("bdpt", "pssmlt", "mlt"):
+            with self.subTest(sampler=sampler):
+                self.ulam("render", "scene.json", "--sampler", sampler, "--time", 0.3, "-o", "a.exr", "--stats", "a.json")
+                first = json.loads((self.folder / "a.json").read_text())
+                (budget, amount), = first["repeat"]["budget"].items()
+                self.ulam("render", "scene.json", "--sampler", json.dumps(first["repeat"]["sampler"]), f"--{budget}", amount,
+                          "-o", "b.exr", "--stats", "b.json")
+                self.assertEqual(json.loads((self.folder / "b.json").read_text())["image_sha256"], first["image_sha256"])
+
     def test_help_goes_to_stdout(self):
         self.assertIn("render", self.ulam("--help").stdout)
         self.assertIn("--resume", self.ulam("run", "--help").stdout)

@@ -69,18 +69,21 @@ Mesh placeMesh(Mesh mesh, const MeshPlacement& placement, const JsonNode& shape,
     if (mesh.triangles.empty()) shape.fail("the mesh has no triangles with an area");
 
     if (placement.normals == MeshPlacement::Normals::Flat) mesh.normals.clear();
-    bool reverse = placement.flipNormals;
     if (!mesh.normals.empty()) {
-        // A mirroring turns the winding around, but not the normals: the geometric normals are to follow these.
-        reverse ^= linearDeterminant(placement.toWorld) < 0;
         const Matrix4 inverseTranspose = placement.toWorld.inverse().transposed();
         for (Vec3f& n : mesh.normals) {
             if (!finite(n)) shape.fail("a vertex normal is not finite");
             n = transformedNormal(placement.flipNormals ? -n : n, inverseTranspose);
         }
     }
-    if (reverse)
-        for (auto& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
+    // Where there are vertex normals, they say which side is the front, whatever the winding.
+    const auto backward = [&](const std::array<uint32_t, 3>& t) {
+        if (mesh.normals.empty()) return placement.flipNormals;
+        const Vec3f e = mesh.positions[t[1]] - mesh.positions[t[0]], f = mesh.positions[t[2]] - mesh.positions[t[0]];
+        return dot(cross(e, f), mesh.normals[t[0]] + mesh.normals[t[1]] + mesh.normals[t[2]]) < 0;
+    };
+    for (auto& triangle : mesh.triangles)
+        if (backward(triangle)) std::swap(triangle[1], triangle[2]);
     if (mesh.normals.empty() && placement.normals == MeshPlacement::Normals::Smooth) mesh.normals = vertexNormals(mesh);
     return mesh;
 }

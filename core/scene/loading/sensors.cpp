@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 
 #include "core/scene/loading/plugin_table.h"
 #include "core/scene/loading/transform.h"
@@ -11,10 +12,12 @@ namespace {
 
 /// Perspective with what only the loader needs.
 struct PerspectiveParameters : Perspective::Parameters {
+    std::string focalLength = "50mm";
     JsonNode toWorld;
     template <class V>
     void describe(V& v) {
         Perspective::Parameters::describe(v);
+        v("focal_length", focalLength, {.help = "on 35 mm film, its diagonal seen in full: a number followed by mm"});
         v("to_world", toWorld, {.help = "camera to world, without scale: a matrix or a list of steps"});
     }
 };
@@ -39,6 +42,17 @@ struct FilmParameters {
         v("rfilter", rfilter, {.help = "reconstruction filter"});
     }
 };
+
+/// Degrees along the diagonal of a frame of 36 mm × 24 mm behind a lens of this focal length, such as "50mm".
+double diagonalFov(const std::string& focalLength, const JsonNode& place) {
+    std::string_view digits = focalLength;
+    if (digits.ends_with("mm")) digits.remove_suffix(2);
+    double length = 0;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), length);
+    if (error != std::errc() || end != digits.data() + digits.size() || !(length > 0 && length < 1e6))
+        place.expected("a focal length in millimetres, such as \"50mm\"");
+    return 2 * std::atan(std::hypot(36, 24) / (2 * length)) * 180 / kPi;
+}
 
 template <class P>
 ReconstructionFilter readFilterOf(const JsonNode& node) {
@@ -137,7 +151,13 @@ FilmSettings readFilm(const JsonNode& sensor, const JsonNode& replacement, LoadC
 
 Perspective readSensor(const JsonNode& node, const FilmSettings& film, LoadContext&) {
     if (pluginName(node) != "perspective") unknownPlugin(node, "sensor", sensorPlugins());
-    const auto p = parsePlugin<PerspectiveParameters>(node);
+    auto p = parsePlugin<PerspectiveParameters>(node);
+    const auto focalLength = node.find("focal_length");
+    if (p.fov > 0 && focalLength) focalLength->fail("a sensor has fov or focal_length, not both");
+    if (p.fov == 0) {
+        p.fov = diagonalFov(p.focalLength, focalLength ? *focalLength : node);
+        p.fovAxis = "diagonal";
+    }
     const Matrix4 toWorld = parseTransform(p.toWorld);
     const auto scale = uniformScale(toWorld);
     if (!scale || std::abs(std::abs(*scale) - 1) > 1e-3) p.toWorld.fail("a camera's to_world must not scale or shear");

@@ -42,30 +42,4 @@ Perspective::Perspective(const Parameters& p, const Matrix4& toWorld, const Film
     importanceOnAxis_ = 1 / (windowArea_ * dx_ * dy_);
 }
 
-Vertex Perspective::samplePosition(const Block&) const {
-    Vertex v{};
-    v.position = position_;
-    v.kind = Vertex::Kind::Point;
-    v.shape = kNone;
-    return v;
-}
-
-Vec3f Perspective::direction(const Vec2f& raster) const {
-    const float x = float(x0_ + dx_ * raster.x), y = float(y0_ + dy_ * raster.y);
-    return normalize(unitX_ * x + unitY_ * y + unitZ_);
-}
-
-std::optional<Vec2f> Perspective::raster(const Vec3f& w) const {
-    const double z = dot(w, unitZ_);
-    if (z <= 0) return std::nullopt;
-    const Vec2f r{float((dot(w, unitX_) / z - x0_) / dx_), float((dot(w, unitY_) / z - y0_) / dy_)};
-    if (r.x < window_.min.x || r.x >= window_.max.x || r.y < window_.min.y || r.y >= window_.max.y) return std::nullopt;
-    return r;
-}
-
-double Perspective::importance(const Vec3f& w) const {
-    const double z = dot(w, unitZ_);
-    return raster(w) ? importanceOnAxis_ / (z * z * z) : 0;
-}
-
 }  // namespace ulam

@@ -25,13 +25,13 @@ struct FilmSize {
 class Perspective {
 public:
     struct Parameters {
-        double fov = 45;
+        double fov = 0;
         std::string fovAxis = "x";
         double nearClip = 1e-2, farClip = 1e4;
         double principalPointOffsetX = 0, principalPointOffsetY = 0;
         template <class V>
         void describe(V& v) {
-            v("fov", fov, {.help = "field of view along fov_axis", .unit = "degrees", .min = 0, .max = 180, .minExclusive = true, .maxExclusive = true});
+            v("fov", fov, {.help = "field of view along fov_axis; 0: what focal_length gives", .unit = "degrees", .min = 0, .max = 180, .maxExclusive = true});
             v("fov_axis", fovAxis, {.help = "axis that fov spans", .choices = {"x", "y", "diagonal", "smaller", "larger"}});
             v("near_clip", nearClip, {.help = "no effect: nothing in front of the pinhole is clipped", .min = 0});
             v("far_clip", farClip, {.help = "no effect: nothing is too far", .min = 0});
@@ -50,13 +50,28 @@ public:
     const Imath::Box2f& window() const { return window_; }
     double windowArea() const { return windowArea_; }
 
-    Vertex samplePosition(const Block&) const;
+    Vertex samplePosition(const Block&) const {
+        Vertex v{};
+        v.position = position_;
+        v.kind = Vertex::Kind::Point;
+        v.shape = kNone;
+        return v;
+    }
     double positionPdf(const Vertex&) const { return 1; }
 
     /// The direction of a raster position.
-    Vec3f direction(const Vec2f& raster) const;
+    Vec3f direction(const Vec2f& raster) const {
+        const float x = float(x0_ + dx_ * raster.x), y = float(y0_ + dy_ * raster.y);
+        return normalize(unitX_ * x + unitY_ * y + unitZ_);
+    }
     /// Raster position of a direction out of the pinhole; nothing if it misses the window.
-    std::optional<Vec2f> raster(const Vec3f& w) const;
+    std::optional<Vec2f> raster(const Vec3f& w) const {
+        const double z = dot(w, unitZ_);
+        if (z <= 0) return std::nullopt;
+        const Vec2f r{float((dot(w, unitX_) / z - x0_) / dx_), float((dot(w, unitY_) / z - y0_) / dy_)};
+        if (r.x < window_.min.x || r.x >= window_.max.x || r.y < window_.min.y || r.y >= window_.max.y) return std::nullopt;
+        return r;
+    }
     /// Uniform over the window: numbers u[0], u[1].
     Vec2f sampleRaster(const Block& u) const {
         return {float(window_.min.x + u[0] * (window_.max.x - window_.min.x)), float(window_.min.y + u[1] * (window_.max.y - window_.min.y))};
@@ -66,7 +81,10 @@ public:
         u[1] = (double(raster.y) - window_.min.y) / (double(window_.max.y) - window_.min.y);
     }
     /// W_e(w), per solid angle; 0 outside the window. Also the density of w under sampleRaster.
-    double importance(const Vec3f& w) const;
+    double importance(const Vec3f& w) const {
+        const double z = dot(w, unitZ_);
+        return raster(w) ? importanceOnAxis_ / (z * z * z) : 0;
+    }
     double directionPdf(const Vec3f& w) const { return importance(w); }
 
 private:

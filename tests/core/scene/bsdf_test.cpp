@@ -76,7 +76,7 @@ TEST_CASE("diffuse: samples follow their density, in the local frame and in tilt
                 if (!sampleScattering(x.scene, x.vertex, back, walk, r.nextBlock(), s)) return std::nullopt;
                 const Vec3f &l = walk == From::Light ? back : s.direction,
                             &c = walk == From::Light ? s.direction : back;
-                const Scattering again = scatter(x.scene, x.vertex, l, c);
+                const Scattering again = scatter(x.scene, x.vertex, x.vertex.lobe, l, c);
                 REQUIRE(again.pdf(walk) == Approx(s.scattering.pdf(walk)).epsilon(1e-4).margin(1e-6));
                 REQUIRE(again.f.x == Approx(s.scattering.f.x).epsilon(1e-4));
                 return azimuthAndZ(s.direction);
@@ -84,7 +84,7 @@ TEST_CASE("diffuse: samples follow their density, in the local frame and in tilt
             [&](double phi, double z) {
                 const Vec3f to = directionOf(phi, z);
                 const bool light = walk == From::Light;
-                return scatter(x.scene, x.vertex, light ? back : to, light ? to : back).pdf(walk);
+                return scatter(x.scene, x.vertex, x.vertex.lobe, light ? back : to, light ? to : back).pdf(walk);
             },
             uint64_t(3 + i)));
     }

@@ -126,6 +126,8 @@ TEST_CASE("sensors and films that make no sense") {
     };
     CHECK(mentions(sensor(R"("fov": 180)"), "/sensor/fov"));
     CHECK(mentions(sensor(R"("fov_axis": "z")"), "/sensor/fov_axis"));
+    CHECK(mentions(sensor(R"("focal_length": "50 cm")"), "/sensor/focal_length"));
+    CHECK(mentions(sensor(R"("focal_length": "50mm", "fov": 45)"), "not both"));
     CHECK(mentions(sensor(R"("to_world": [{"type": "scale", "value": 2}])"), "must not scale"));
     CHECK(mentions(sensor(R"("film": {"type": "hdrfilm", "width": 0})"), "/sensor/film/width"));
     CHECK(mentions(sensor(R"("film": {"type": "hdrfilm", "width": 10, "crop_offset_x": 5, "crop_width": 6})"),

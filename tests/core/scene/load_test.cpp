@@ -188,6 +188,16 @@ TEST_CASE("the camera looks along +z, its image has +x on the left and +y up") {
     CHECK(near(scene.sensor->direction({50, 0}), normalize(Vec3f(0, 1, 1))));
 }
 
+TEST_CASE("without fov the field of view is that of a 50 mm lens on 35 mm film, along the diagonal") {
+    const auto corner = [](const std::string& parameters) {
+        const Scene scene = loadText(R"({"type": "scene", "light": {"type": "point"}, "sensor": {"type": "perspective", )" +
+                                     parameters + R"("film": {"type": "hdrfilm", "width": 36, "height": 24}}})");
+        return double(scene.sensor->direction({0, 0}).z);
+    };
+    CHECK(std::abs(corner("") - 50 / std::hypot(50, 18, 12)) < 1e-6);
+    CHECK(std::abs(corner(R"("focal_length": "35mm", )") - 35 / std::hypot(35, 18, 12)) < 1e-6);
+}
+
 TEST_CASE("the hash changes with the dictionary, the film and the files") {
     const SceneFolder folder("hash_test");
     const std::string text = sceneWith(R"("m": {"type": "obj", "filename": "a.obj"})");
