@@ -1,6 +1,6 @@
 // path: path tracing with next-event estimation and multiple importance sampling.
 
-#include "core/render/independent_run.h"
+#include "core/render/path_source.h"
 
 namespace ulam {
 namespace {
@@ -19,12 +19,10 @@ public:
     explicit PathTracer(const Parameters& p) : parameters_(p) {}
 
     std::unique_ptr<SamplerRun> start(const RunContext& context) const override {
-        BidirectionalOptions options;
-        options.limits = parameters_.limits;
-        options.heuristic = parameters_.heuristic == "power" ? Heuristic::Power : Heuristic::Balance;
-        options.techniques = {.hitLight = true, .nextEvent = true, .connect = false, .lightImage = false};
-        auto run = std::make_unique<IndependentRun>(context, [&] { return makeBidirectionalSource(context.scene, options); });
-        run->noteBias(missedLight(context.scene, options.techniques));
+        const Heuristic heuristic = parameters_.heuristic == "power" ? Heuristic::Power : Heuristic::Balance;
+        auto run = std::make_unique<IndependentRun>(
+            context, [&] { return std::make_unique<PathSource<>>(context.scene, parameters_.limits, heuristic); });
+        run->noteBias(missedLight(context.scene, {.connect = false, .lightImage = false}));
         return run;
     }
 

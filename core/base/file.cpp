@@ -7,8 +7,11 @@
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <charconv>
+#include <csignal>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "core/base/error.h"
 
@@ -74,6 +77,24 @@ std::filesystem::path behindLinks(const std::filesystem::path& path) {
     return target;
 }
 
+std::string temporaryName(pid_t process, unsigned number) {
+    return fmt::format(".ulam-{}-{}.tmp", process, number);
+}
+
+/// A temporary file's name whose process has ended. Its number may be ours by now.
+bool isAbandoned(const std::string& name) {
+    constexpr std::string_view prefix = ".ulam-";
+    if (!name.starts_with(prefix)) return false;
+    const char* const end = name.data() + name.size();
+    pid_t process = 0;
+    unsigned number = 0;
+    const char* const dash = std::from_chars(name.data() + prefix.size(), end, process).ptr;
+    if (dash == end || process <= 0) return false;
+    std::from_chars(dash + 1, end, number);
+    if (name != temporaryName(process, number)) return false;
+    return process == ::getpid() || (::kill(process, 0) != 0 && errno == ESRCH);
+}
+
 }  // namespace
 
 std::string readFile(const std::filesystem::path& path, std::size_t maxBytes) {
@@ -115,7 +136,7 @@ void writeFileAtomically(const std::filesystem::path& path, std::string_view byt
     std::filesystem::path temporary;
     int number = -1;
     do {
-        temporary = folder / fmt::format(".ulam-{}-{}.tmp", ::getpid(), counter++);
+        temporary = folder / temporaryName(::getpid(), counter++);
         number = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     } while (number < 0 && errno == EEXIST);
     Descriptor file(number);
@@ -130,6 +151,17 @@ void writeFileAtomically(const std::filesystem::path& path, std::string_view byt
     // The new name itself reaches the disk with the folder; not every file system can flush one, and the data is safe.
     const Descriptor directory(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
     if (directory.number() >= 0) ::fsync(directory.number());
+}
+
+void removeTemporaries(const std::filesystem::path& folder) {
+    namespace fs = std::filesystem;
+    std::error_code error, ignored;
+    std::vector<fs::path> abandoned;
+    fs::recursive_directory_iterator entry(folder, fs::directory_options::skip_permission_denied, error);
+    for (; !error && entry != fs::recursive_directory_iterator(); entry.increment(error))
+        if (entry->is_regular_file(ignored) && isAbandoned(entry->path().filename().string()))
+            abandoned.push_back(entry->path());
+    for (const fs::path& file : abandoned) fs::remove(file, ignored);
 }
 
 }  // namespace ulam

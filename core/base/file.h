@@ -19,4 +19,8 @@ std::string readFile(const std::filesystem::path& path, std::size_t maxBytes = s
 /// the old file untouched and no temporary file behind. The folder must exist.
 void writeFileAtomically(const std::filesystem::path& path, std::string_view bytes);
 
+/// Removes the temporary files in a folder, and in the folders below, that processes left when they were killed while
+/// writing. Those of other processes that still run stay, and so does what cannot be removed.
+void removeTemporaries(const std::filesystem::path& folder);
+
 }  // namespace ulam

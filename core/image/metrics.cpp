@@ -126,6 +126,20 @@ double Metric::trimmedValue(const Map& map) const {
     return fromMeanError(mean(sorted.data(), kept));
 }
 
+void requireVariance(const Image& variance, const std::string& file) {
+    for (int y = 0; y < variance.height; ++y) {
+        for (int x = 0; x < variance.width; ++x) {
+            const Rgb& p = variance.at(x, y);
+            for (const float v : {p.x, p.y, p.z}) {
+                if (!(v >= 0 && std::isfinite(v)))
+                    fail(ExitCode::InvalidConfig,
+                         "{}: expected variances, finite and not negative; found ({}, {}, {}) in pixel ({}, {})", file,
+                         p.x, p.y, p.z, x, y);
+            }
+        }
+    }
+}
+
 std::span<const Metric> metrics() {
     return kMetrics;
 }

@@ -41,6 +41,10 @@ struct Metric {
     double evaluate(const Image& image, const Image& reference, const Image* referenceVariance = nullptr) const;
 };
 
+/// Throws ExitCode::InvalidConfig, naming the file and the pixel, where a value of a variance is negative or not
+/// finite: debiasing with it would make an error of its own.
+void requireVariance(const Image& variance, const std::string& file);
+
 /// The share of pixels a trimmed value leaves out.
 inline constexpr double kTrimmedShare = 0.001;
 

@@ -25,7 +25,7 @@ public:
         ++rays_;
         Hit hit;
         if (scene_->rays().intersect(origin, w, hit)) {
-            out = scene_->vertexAt(origin, w, hit);
+            scene_->vertexAt(origin, w, hit, out);
             return true;
         }
         if (scene_->environment == kNone) return false;

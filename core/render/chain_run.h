@@ -17,7 +17,7 @@ struct ChainParameters {
     template <class V>
     void describe(V& v) {
         v("chains", chains, {.help = "Markov chains, whatever the number of threads", .min = 1, .max = 1e6});
-        v("bootstrap", bootstrap, {.help = "bidirectional samples that seed the chains and give the image's scale; 0: about a tenth of the work", .min = 0, .max = 1e9});
+        v("bootstrap", bootstrap, {.help = "bidirectional samples that seed the chains and give the image's scale; 0: about a tenth of the work", .min = 0, .max = 1e8});
         v("target", target, {.help = "what chains are distributed as: a scalar of the contribution (ulam list targets)"});
     }
 };

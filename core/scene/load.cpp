@@ -29,6 +29,7 @@ public:
 
 private:
     std::vector<JsonNode> entries() const;
+    void checkNames() const;
     JsonNode sensorNode() const;
     JsonNode resolve(const JsonNode& node) const;
     uint32_t material(const JsonNode& node);
@@ -63,6 +64,22 @@ JsonNode SceneBuilder::sensorNode() const {
     return *sensor;
 }
 
+/// By which references name an entry.
+std::string nameOf(const JsonNode& entry) {
+    const auto own = entry.find("id");
+    return own ? own->string() : entry.key();
+}
+
+void SceneBuilder::checkNames() const {
+    std::map<std::string, JsonNode> known;
+    for (const JsonNode& entry : entries()) {
+        const auto [first, isNew] = known.try_emplace(nameOf(entry), entry);
+        if (!isNew)
+            entry.fail(fmt::format("another entry is called {} too", inQuotes(first->first)),
+                       fmt::format("it stands at {}", first->second.where()));
+    }
+}
+
 /// What a reference stands for: the scene's entry of that name.
 JsonNode SceneBuilder::resolve(const JsonNode& node) const {
     if (pluginName(node) != "ref") return node;
@@ -70,8 +87,7 @@ JsonNode SceneBuilder::resolve(const JsonNode& node) const {
     const JsonNode id = node.at("id");
     std::vector<std::string> names;
     for (const JsonNode& entry : entries()) {
-        const auto own = entry.find("id");
-        const std::string name = own ? own->string() : entry.key();
+        const std::string name = nameOf(entry);
         if (name == id.string()) {
             if (!contains(scenePlugins(PluginKind::Bsdfs), pluginName(entry)))
                 id.fail(fmt::format("{} is no BSDF, but {}", inQuotes(name), inQuotes(pluginName(entry))),
@@ -132,6 +148,7 @@ void SceneBuilder::addEmitter(const JsonNode& node) {
 }
 
 Scene SceneBuilder::build(const JsonNode& film) {
+    checkNames();
     for (const JsonNode& entry : entries()) {
         const std::string& name = pluginName(entry);
         if (noteIfUnused(entry, context_)) continue;
@@ -168,7 +185,10 @@ struct SceneDescription::Content {
 };
 
 SceneDescription SceneDescription::fromFile(const std::filesystem::path& file) {
-    return fromNode(JsonDocument::fromFile(file).root(), file.parent_path());
+    const JsonDocument document = JsonDocument::fromFile(file);
+    // Not the name of another file: these could go round in a ring.
+    if (document.root().isString()) document.root().expected("a scene or a generator, an object with a \"type\"");
+    return fromNode(document.root(), file.parent_path());
 }
 
 SceneDescription SceneDescription::fromNode(const JsonNode& node, const std::filesystem::path& folder) {

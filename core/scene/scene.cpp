@@ -32,8 +32,7 @@ void Scene::finalize() {
     rays_ = RayTracer(shapes);
 }
 
-Vertex Scene::vertexAt(const Vec3f& origin, const Vec3f& direction, const Hit& hit) const {
-    Vertex v;
+void Scene::vertexAt(const Vec3f& origin, const Vec3f& direction, const Hit& hit, Vertex& v) const {
     v.kind = Vertex::Kind::Surface;
     v.lobe = Lobe::Smooth;
     v.shape = hit.shape;
@@ -51,7 +50,6 @@ Vertex Scene::vertexAt(const Vec3f& origin, const Vec3f& direction, const Hit& h
         v.position = sphere.center + outward * sphere.radius;
     }
     shape.setNormals(v);
-    return v;
 }
 
 }  // namespace ulam

@@ -41,8 +41,8 @@ public:
     }
     const Material& materialAt(const Vertex& v) const { return materials[shapes[v.shape].material]; }
 
-    /// The vertex at a hit of a ray.
-    Vertex vertexAt(const Vec3f& origin, const Vec3f& direction, const Hit& hit) const;
+    /// Makes v the vertex at a hit of a ray. In place: a copy right after so many small writes would wait for them.
+    void vertexAt(const Vec3f& origin, const Vec3f& direction, const Hit& hit, Vertex& v) const;
 
 private:
     BoundingSphere bounds_;

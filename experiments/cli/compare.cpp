@@ -20,7 +20,10 @@ struct CompareArguments {
 void compareImages(const CompareArguments& a) {
     const Image image = readImage(a.image), reference = readImage(a.reference);
     std::optional<Image> variance;
-    if (!a.variance.empty()) variance = readImage(a.variance);
+    if (!a.variance.empty()) {
+        variance = readImage(a.variance);
+        requireVariance(*variance, a.variance);
+    }
     Json values = Json::object();
     for (const Metric& metric : metrics()) {
         const Metric::Map map = metric.errorMap(image, reference, variance ? &*variance : nullptr);

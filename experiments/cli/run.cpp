@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "core/base/error.h"
+#include "core/base/file.h"
 #include "core/config/suggest.h"
 #include "experiments/cli/arguments.h"
 #include "experiments/cli/commands.h"
@@ -59,7 +60,7 @@ void printDryRun(const Plan& plan, const RunArguments& a) {
     for (const PlannedReference& reference : plan.references)
         if (reference.spec.kind == ReferenceSpec::Kind::Sampler)
             resolved["references"][reference.key]["estimated_seconds"] =
-                fs::exists(referenceCache() / reference.key) ? 0 : estimate(reference.task);
+                isCached(reference) ? 0 : estimate(reference.task);
     resolved["estimated_seconds"] = total;
     resolved["warnings"] = warnings;
     if (a.json) {
@@ -101,6 +102,7 @@ void runExperiment(const RunArguments& a) {
         fail(ExitCode::Usage, "{} holds a run already: give --resume to go on with it, or another -o",
              options.runDir.string());
 
+    if (a.resume) removeTemporaries(options.runDir);
     Progress progress(a.quiet);
     std::vector<std::string> warnings = replicateWarnings(plan);
     for (const auto& reference : plan.references)
@@ -116,9 +118,10 @@ void runExperiment(const RunArguments& a) {
     writeSummary(options.runDir, summary);
     writeReport(options.runDir);
     printResults(summary, options.runDir, a);
-    if (!outcome.failures.empty())
-        fail(ExitCode::SomeCellsFailed, "{} of {} replicates failed; --resume tries them again",
-             outcome.failures.size(), plan.order().size());
+    if (!outcome.failures.empty()) {
+        const std::size_t all = plan.order().size(), done = std::size_t(outcome.rendered + outcome.reused);
+        fail(ExitCode::SomeCellsFailed, "{} of {} replicates failed; --resume tries them again", all - done, all);
+    }
 }
 
 }  // namespace
@@ -140,7 +143,8 @@ void addRunCommand(CLI::App& app) {
         ->take_all()
         ->allow_extra_args(false);
     a->threads = addThreadsOption(command);
-    command.add_flag("--keep-going", a->keepGoing, "a replicate that fails is reported, the others go on");
+    command.add_flag("--keep-going", a->keepGoing,
+                     "a replicate or a reference that fails is reported, the others go on");
     command.add_flag("--quiet", a->quiet, "no progress");
     command.add_flag("--json", a->json, "print summary.json (with --dry-run: the plan)");
     addPluginOption(command);

@@ -53,9 +53,8 @@ public:
           folder_(cellFolder(runDir, cell)),
           primary_(findMetric(plan.metrics.front())) {
         for (int r = 0; r < cell.task.replicates; ++r) {
-            Json result = finishedReplicate(cell.task, r, folder_);
-            if (result.is_null()) continue;
-            replicates_.push_back({r, std::move(result), readImage(replicateFolder(folder_, r) / "image.exr")});
+            auto finished = finishedReplicate(cell.task, r, folder_);
+            if (finished) replicates_.push_back({r, std::move(finished->result), std::move(finished->image)});
         }
     }
 

@@ -9,6 +9,7 @@
 #include "core/base/file.h"
 #include "core/config/suggest.h"
 #include "core/image/image_io.h"
+#include "core/image/metrics.h"
 #include "experiments/engine/provenance.h"
 #include "experiments/engine/replicate.h"
 #include "experiments/statistics/holm.h"
@@ -24,11 +25,6 @@ fs::path folderOf(const PlannedReference& reference, const fs::path& runDir) {
     return runDir / "references" / reference.key;
 }
 
-/// result.json is written last.
-bool isComplete(const fs::path& folder) {
-    return fs::exists(folder / "result.json");
-}
-
 void write(const PlannedReference& reference, const fs::path& folder, const Image& image, const Image& variance,
            Json result) {
     makeFolder(folder);
@@ -42,7 +38,9 @@ void write(const PlannedReference& reference, const fs::path& folder, const Imag
     Json fields = {{"schema_version", 1},
                    {"key", reference.key},
                    {"scene", reference.scene->name},
-                   {"scene_hash", reference.scene->scene.hash}};
+                   {"scene_hash", reference.scene->scene.hash},
+                   {"image_sha256", imageHash(image)},
+                   {"variance_sha256", imageHash(variance)}};
     fields.update(result);
     writeFileAtomically(folder / "result.json", dump(fields) + "\n");
 }
@@ -68,13 +66,18 @@ Json sharesJson(const Features& features, const std::vector<statistics::MeanEsti
     return json;
 }
 
-std::vector<statistics::MeanEstimate> sharesFromJson(const Features& features, const Json& json) {
+statistics::MeanEstimate shareFromJson(const JsonNode& json) {
+    statistics::MeanEstimate share{json.at("mean").number(), json.at("variance_of_mean").number()};
+    if (const auto degrees = json.find("degrees")) share.degrees = degrees->number();
+    return share;
+}
+
+std::vector<statistics::MeanEstimate> sharesFromJson(const Features& features, const JsonNode& json) {
     std::vector<statistics::MeanEstimate> shares;
     for (const std::string& name : features.names) {
-        if (!json.contains(name)) return {};
-        const Json& share = json[name];
-        shares.push_back({share.at("mean"), share.at("variance_of_mean")});
-        if (share.contains("degrees")) shares.back().degrees = share["degrees"];
+        const auto share = json.find(name);
+        if (!share) return {};
+        shares.push_back(shareFromJson(*share));
     }
     return shares;
 }
@@ -95,11 +98,7 @@ std::vector<statistics::MeanEstimate> companionShares(const fs::path& image, con
     const JsonDocument document = JsonDocument::fromFile(file);
     document.root().allowOnly("feature", features.names);
     std::vector<statistics::MeanEstimate> shares;
-    for (const std::string& name : features.names) {
-        const JsonNode share = document.root().at(name);
-        shares.push_back({share.at("mean").number(), share.at("variance_of_mean").number()});
-        if (const auto degrees = share.find("degrees")) shares.back().degrees = degrees->number();
-    }
+    for (const std::string& name : features.names) shares.push_back(shareFromJson(document.root().at(name)));
     return shares;
 }
 
@@ -108,6 +107,51 @@ void checkSize(const PlannedReference& reference, const Image& image, const fs::
     if (image.width != sensor.width() || image.height != sensor.height())
         fail(ExitCode::InvalidConfig, "{}: expected {} x {} pixels as of scene {}, found {} x {}", file.string(),
              sensor.width(), sensor.height(), reference.scene->name, image.width, image.height);
+}
+
+/// A stored reference. Fails where anything of it is missing, damaged, of another size or not what was written.
+Reference load(const PlannedReference& reference, const fs::path& folder) {
+    const JsonDocument document = JsonDocument::fromFile(folder / "result.json");
+    const JsonNode result = document.root();
+    if (result.at("key").string() != reference.key) result.at("key").expected(reference.key);
+    const fs::path image = folder / "image.exr", variance = folder / "variance.exr";
+    Reference loaded;
+    loaded.image = readRecordedImage(image, result.at("image_sha256"));
+    loaded.variance = readRecordedImage(variance, result.at("variance_sha256"));
+    checkSize(reference, loaded.image, image);
+    checkSize(reference, loaded.variance, variance);
+    requireVariance(loaded.variance, variance);
+    if (reference.spec.kind == ReferenceSpec::Kind::Sampler) loaded.halvesAgree = result.at("halves_agree").boolean();
+    loaded.featureShares = sharesFromJson(reference.scene->scene.features, result.at("feature_shares"));
+    return loaded;
+}
+
+bool isIntact(const PlannedReference& reference, const fs::path& folder) {
+    try {
+        load(reference, folder);
+        return true;
+    } catch (const Error&) {
+        return false;
+    }
+}
+
+/// Its parts stay: each is checked on its own.
+void discard(const fs::path& folder) {
+    std::error_code ignored;  // what cannot be removed cannot be written either, which says so
+    for (const char* file : kFiles) fs::remove_all(folder / file, ignored);
+}
+
+/// False where the cache does not hold it; a damaged entry would stand in the way of the next one and is removed.
+bool takeFromCache(const PlannedReference& reference, const fs::path& folder) {
+    const fs::path cached = referenceCache() / reference.key;
+    if (!isIntact(reference, cached)) {
+        std::error_code ignored;
+        fs::remove_all(cached, ignored);
+        return false;
+    }
+    makeFolder(folder);
+    for (const char* file : kFiles) writeFileAtomically(folder / file, readFile(cached / file));
+    return true;
 }
 
 void writeTruth(const PlannedReference& reference, const fs::path& folder) {
@@ -122,6 +166,7 @@ void writeFromFile(const PlannedReference& reference, const fs::path& folder) {
     const Image image = readImage(reference.spec.image), variance = readImage(reference.spec.variance);
     checkSize(reference, image, reference.spec.image);
     checkSize(reference, variance, reference.spec.variance);
+    requireVariance(variance, reference.spec.variance);
     const Features& features = reference.scene->scene.features;
     write(reference, folder, image, variance,
           {{"kind", "file"},
@@ -212,14 +257,15 @@ fs::path referenceCache() {
 
 bool prepareReference(const PlannedReference& reference, const fs::path& runDir) {
     const fs::path folder = folderOf(reference, runDir);
-    if (isComplete(folder)) return true;
+    if (isIntact(reference, folder)) return true;
+    discard(folder);
     if (reference.spec.kind == ReferenceSpec::Kind::Truth) return writeTruth(reference, folder), true;
     if (reference.spec.kind == ReferenceSpec::Kind::File) return writeFromFile(reference, folder), true;
-    const fs::path cached = referenceCache() / reference.key;
-    if (!isComplete(cached)) return false;
-    makeFolder(folder);
-    for (const char* file : kFiles) writeFileAtomically(folder / file, readFile(cached / file));
-    return true;
+    return takeFromCache(reference, folder);
+}
+
+bool isCached(const PlannedReference& reference) {
+    return isIntact(reference, referenceCache() / reference.key);
 }
 
 fs::path partsFolder(const PlannedReference& reference, const fs::path& runDir) {
@@ -230,8 +276,11 @@ void finishReference(const PlannedReference& reference, const fs::path& runDir) 
     std::vector<Image> images;
     std::vector<Json> results;
     for (int part = 0; part < reference.task.replicates; ++part) {
-        results.push_back(finishedReplicate(reference.task, part, partsFolder(reference, runDir)));
-        images.push_back(readImage(replicateFolder(partsFolder(reference, runDir), part) / "image.exr"));
+        std::string damage = "it is missing";
+        auto finished = finishedReplicate(reference.task, part, partsFolder(reference, runDir), &damage);
+        if (!finished) fail(ExitCode::InputMissing, "part {} of {} is lost: {}", part + 1, reference.key, damage);
+        results.push_back(std::move(finished->result));
+        images.push_back(std::move(finished->image));
     }
     const CombinedParts combined = combineParts(images);
     if (std::ranges::all_of(combined.image.pixels, [](const Rgb& p) { return p == Rgb(0); }))
@@ -258,16 +307,7 @@ void finishReference(const PlannedReference& reference, const fs::path& runDir) 
 }
 
 Reference readReference(const PlannedReference& reference, const fs::path& runDir) {
-    const fs::path folder = folderOf(reference, runDir);
-    const Json result = JsonDocument::fromFile(folder / "result.json").json();
-    Reference read;
-    read.image = readImage(folder / "image.exr");
-    read.variance = readImage(folder / "variance.exr");
-    checkSize(reference, read.image, folder / "image.exr");
-    read.halvesAgree = result.value("halves_agree", true);
-    read.featureShares =
-        sharesFromJson(reference.scene->scene.features, result.value("feature_shares", Json::object()));
-    return read;
+    return load(reference, folderOf(reference, runDir));
 }
 
 }  // namespace ulam

@@ -27,8 +27,8 @@ struct CombinedParts {
 /// The first half of the parts against the second; at least two parts a half.
 CombinedParts combineParts(const std::vector<Image>& parts);
 
-/// RUN_DIR/references/KEY holds the reference: from this run, from the cache across runs, from a file, or exact. Parts
-/// that a sampler still has to make are not there yet.
+/// RUN_DIR/references/KEY holds the reference: from this run, from the cache across runs, from a file, or exact. False
+/// where a sampler still has to make parts. What is damaged, in the run or in the cache, is removed.
 bool prepareReference(const PlannedReference& reference, const std::filesystem::path& runDir);
 /// Where the parts of a reference stand until it is complete.
 std::filesystem::path partsFolder(const PlannedReference& reference, const std::filesystem::path& runDir);
@@ -37,6 +37,9 @@ std::filesystem::path partsFolder(const PlannedReference& reference, const std::
 void finishReference(const PlannedReference& reference, const std::filesystem::path& runDir);
 /// Of a prepared or finished reference.
 Reference readReference(const PlannedReference& reference, const std::filesystem::path& runDir);
+
+/// Does the cache hold it, undamaged?
+bool isCached(const PlannedReference& reference);
 
 /// $XDG_CACHE_HOME/ulam/references, or ~/.cache/ulam/references.
 std::filesystem::path referenceCache();

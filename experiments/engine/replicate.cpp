@@ -2,25 +2,63 @@
 
 namespace ulam {
 
+namespace {
+
 namespace fs = std::filesystem;
+
+/// What the analysis reads is there and is a number. Fails with InvalidConfig where it is not.
+void checkNumbers(const JsonNode& result) {
+    for (const char* field : {"wall_seconds", "cpu_seconds", "setup_seconds", "seeding_seconds", "rays", "samples",
+                              "mutations", "chains", "normalization", "feature_jumps"})
+        result.at(field).number();
+    for (const auto& [feature, energy] : result.at("feature_energy").members()) energy.number();
+    for (const auto& [cause, count] : result.at("non_finite").members()) count.unsignedInteger();
+    for (const auto& [mutation, statistics] : result.at("mutation_statistics").members()) {
+        for (const char* count : {"proposed", "accepted", "zero"}) statistics.at(count).unsignedInteger();
+        for (const char* field : {"seconds", "esjd_pixels"}) statistics.at(field).number();
+        for (const auto& [reason, count] : statistics.at("rejected").members()) count.unsignedInteger();
+    }
+}
+
+/// As many as the task asks for, each as large as the image.
+void checkSnapshots(const Task& task, const JsonNode& snapshots, const fs::path& folder, const Image& image) {
+    const std::vector<JsonNode> shots = snapshots.elements();
+    if (shots.size() != std::size_t(task.snapshots)) snapshots.expected(fmt::format("{} snapshots", task.snapshots));
+    for (const JsonNode& shot : shots) {
+        for (const char* field : {"fraction", "seconds", "rays", "samples", "mutations"}) shot.at(field).number();
+        const fs::path file = folder / shot.at("image").string();
+        const Image stored = readImage(file);
+        if (stored.width != image.width || stored.height != image.height)
+            fail(ExitCode::InvalidConfig, "{}: expected {} x {} pixels as of the final image, found {} x {}",
+                 file.string(), image.width, image.height, stored.width, stored.height);
+    }
+}
+
+}  // namespace
 
 fs::path replicateFolder(const fs::path& taskFolder, int replicate) {
     return taskFolder / fmt::format("r{:03}", replicate);
 }
 
-Json finishedReplicate(const Task& task, int replicate, const fs::path& taskFolder) {
+std::optional<FinishedReplicate> finishedReplicate(const Task& task, int replicate, const fs::path& taskFolder,
+                                                   std::string* damage) {
     const fs::path folder = replicateFolder(taskFolder, replicate);
-    const fs::path file = folder / "result.json";
-    if (!fs::exists(file) || !fs::exists(folder / "image.exr")) return nullptr;
-    Json result;
+    std::error_code ignored;
+    if (!fs::exists(folder / "result.json", ignored)) return {};
     try {
-        result = JsonDocument::fromFile(file).json();
-    } catch (const Error&) {
-        return nullptr;  // damaged: done again
+        const JsonDocument document = JsonDocument::fromFile(folder / "result.json");
+        const JsonNode result = document.root();
+        const bool matches =
+            result.at("task_hash").string() == task.hash() && result.at("replicate").integer() == replicate;
+        if (!matches) return {};
+        checkNumbers(result);
+        FinishedReplicate finished{result.json(), readRecordedImage(folder / "image.exr", result.at("image_sha256"))};
+        checkSnapshots(task, result.at("snapshots"), folder, finished.image);
+        return finished;
+    } catch (const Error& error) {
+        if (damage) *damage = error.what();
+        return {};
     }
-    const bool matches = result.is_object() && result.value("task_hash", "") == task.hash() &&
-                         result.value("replicate", -1) == replicate;
-    return matches ? result : Json();
 }
 
 bool renderReplicate(const Task& task, int replicate, const fs::path& taskFolder, int threads,

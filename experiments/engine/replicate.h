@@ -2,6 +2,8 @@
 // One replicate of a task: rendered, or found finished.
 
 #include <filesystem>
+#include <optional>
+#include <string>
 
 #include "experiments/engine/plan.h"
 #include "experiments/engine/result.h"
@@ -11,8 +13,16 @@ namespace ulam {
 /// FOLDER/r007
 std::filesystem::path replicateFolder(const std::filesystem::path& taskFolder, int replicate);
 
-/// The result.json of a finished replicate, or null. Finished means: complete, and made by this very task.
-Json finishedReplicate(const Task& task, int replicate, const std::filesystem::path& taskFolder);
+struct FinishedReplicate {
+    Json result;  ///< result.json; what the analysis reads of it is there and of its type
+    Image image;
+};
+
+/// A finished replicate, or nothing. Finished means: made by this very task, complete, and every image is what was
+/// written. `damage` says what is wrong with one that is there and is none of another task.
+std::optional<FinishedReplicate> finishedReplicate(const Task& task, int replicate,
+                                                   const std::filesystem::path& taskFolder,
+                                                   std::string* damage = nullptr);
 
 /// Renders a replicate and writes its folder. Returns false where a signal stopped it: then nothing is written.
 bool renderReplicate(const Task& task, int replicate, const std::filesystem::path& taskFolder, int threads,

@@ -122,9 +122,13 @@ ImageAttributes imageAttributes(const RunIdentity& run) {
             {"ulam:seed", std::to_string(run.seed)}, {"ulam:replicate", std::to_string(run.replicate)}};
 }
 
-void refuseBlackImage(const RenderResult& result) {
+bool isBlack(const Image& image) {
     const auto black = [](const Rgb& p) { return p.x == 0 && p.y == 0 && p.z == 0; };
-    if (!std::all_of(result.image.pixels.begin(), result.image.pixels.end(), black)) return;
+    return std::all_of(image.pixels.begin(), image.pixels.end(), black);
+}
+
+void refuseBlackImage(const RenderResult& result) {
+    if (!isBlack(result.image)) return;
     fail(ExitCode::InvalidConfig,
          "no path carried light: all of {} samples and mutations found nothing. Is the camera inside a wall or "
          "looking away, does nothing emit, is max_depth too small (1 shows emitters only), or the budget?",
@@ -135,6 +139,13 @@ std::string imageHash(const Image& image) {
     std::string bytes = fmt::format("{} {} ", image.width, image.height);
     bytes.append(reinterpret_cast<const char*>(image.pixels.data()), image.pixels.size() * sizeof(Rgb));
     return sha256(bytes);
+}
+
+Image readRecordedImage(const fs::path& file, const JsonNode& hash) {
+    Image image = readImage(file);
+    if (imageHash(image) != hash.string())
+        hash.fail(fmt::format("{} is not the image that was written with the hash", file.string()));
+    return image;
 }
 
 void makeFolder(const fs::path& folder) {

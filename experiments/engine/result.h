@@ -32,11 +32,17 @@ Json resultJson(const RunIdentity& run, const RenderResult& result, const Featur
 /// Seed, sampler, scene hash and program version as attributes of an EXR.
 ImageAttributes imageAttributes(const RunIdentity& run);
 
+/// Every pixel is 0.
+bool isBlack(const Image& image);
+
 /// Fails with InvalidConfig where no path carried light.
 void refuseBlackImage(const RenderResult& result);
 
 /// SHA-256 of width, height and the float values.
 std::string imageHash(const Image& image);
+
+/// An image whose hash was recorded when it was written. Errors as readImage, and InvalidConfig where the hash differs.
+Image readRecordedImage(const std::filesystem::path& file, const JsonNode& hash);
 
 /// Writes image.exr, snapshots/ and extra/ into a folder that is made, and result.json last: a run with a result.json
 /// is complete.

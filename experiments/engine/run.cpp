@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 #include "core/base/error.h"
 #include "core/base/file.h"
@@ -26,6 +27,7 @@ public:
 
     void add(const Task& task) { left_[&task] = task.replicates; }
     void skip(const Task& task) { --left_[&task]; }
+    void drop(const Task& task) { left_[&task] = 0; }
     void finish(const Task& task, double seconds) {
         --left_[&task];
         spent_[&task].first += seconds;
@@ -79,24 +81,54 @@ private:
     }
 
     void makeReferences() {
-        std::vector<const PlannedReference*> missing;
-        for (const PlannedReference& reference : plan_.references)
-            if (!prepareReference(reference, options_.runDir)) missing.push_back(&reference);
-        for (const PlannedReference* reference : missing) workload_.add(reference->task);
-        for (const PlannedReference* reference : missing) {
-            const fs::path folder = partsFolder(*reference, options_.runDir);
-            for (int part = 0; part < reference->task.replicates; ++part) {
-                const std::string what = fmt::format("reference of {}, part {} of {}", reference->scene->name, part + 1,
-                                                     reference->task.replicates);
-                if (!doReplicate(reference->task, part, folder, what)) return;
+        std::vector<std::size_t> missing;
+        for (std::size_t i = 0; i < plan_.references.size(); ++i)
+            attempt(i, [&] {
+                if (!prepareReference(plan_.references[i], options_.runDir)) missing.push_back(i);
+            });
+        for (const std::size_t i : missing) workload_.add(plan_.references[i].task);
+        for (const std::size_t i : missing) {
+            attempt(i, [&] { makeParts(plan_.references[i]); });
+            if (outcome_.interrupted) return;
+        }
+    }
+
+    void makeParts(const PlannedReference& reference) {
+        const fs::path folder = partsFolder(reference, options_.runDir);
+        for (int part = 0; part < reference.task.replicates; ++part) {
+            const std::string what = fmt::format("reference of {}, part {} of {}", reference.scene->name, part + 1,
+                                                 reference.task.replicates);
+            if (!doReplicate(reference.task, part, folder, what)) return;
+        }
+        finishReference(reference, options_.runDir);
+    }
+
+    bool mayGoOn(const Error& error) const { return options_.keepGoing && error.code() != ExitCode::CannotWrite; }
+
+    /// A step towards a reference. Where it fails, the cells that need the reference are not tried.
+    template <class Step>
+    void attempt(std::size_t index, Step step) {
+        const PlannedReference& reference = plan_.references[index];
+        try {
+            step();
+        } catch (const Error& error) {
+            if (!mayGoOn(error)) throw;
+            progress_.message(fmt::format("failed: reference of {}: {}", reference.scene->name, error.what()));
+            outcome_.failures.push_back({reference.scene->name, "", {}, error.what()});
+            workload_.drop(reference.task);
+            for (const Cell& cell : plan_.cells) {
+                if (cell.reference != index) continue;
+                outcome_.failures.push_back({reference.scene->name, cell.task.name, {}, "its reference failed"});
+                workload_.drop(cell.task);
             }
-            finishReference(*reference, options_.runDir);
+            withoutReference_.insert(index);
         }
     }
 
     void renderCells() {
         for (const Plan::Replicate& next : plan_.order()) {
             const Cell& cell = plan_.cells[next.cell];
+            if (withoutReference_.contains(cell.reference)) continue;
             const std::string what =
                 fmt::format("{}, replicate {} of {}", cell.task.name, next.number + 1, cell.task.replicates);
             const int before = reused_;
@@ -104,9 +136,8 @@ private:
                 if (!doReplicate(cell.task, next.number, cellFolder(options_.runDir, cell), what)) return;
                 ++(reused_ > before ? outcome_.reused : outcome_.rendered);
             } catch (const Error& error) {
-                if (!options_.keepGoing || error.code() == ExitCode::CannotWrite)
-                    throw Error(error.code(), fmt::format("{}: {}", what, error.what()));
-                outcome_.failures.push_back({cell.task.name, next.number, error.what()});
+                if (!mayGoOn(error)) throw Error(error.code(), fmt::format("{}: {}", what, error.what()));
+                outcome_.failures.push_back({cell.task.scene->name, cell.task.name, next.number, error.what()});
                 progress_.message(fmt::format("failed: {}: {}", what, error.what()));
                 workload_.skip(cell.task);
             }
@@ -115,10 +146,16 @@ private:
 
     /// Returns false where a signal came.
     bool doReplicate(const Task& task, int replicate, const fs::path& folder, const std::string& what) {
-        if (!finishedReplicate(task, replicate, folder).is_null()) {
+        std::string damage;
+        if (finishedReplicate(task, replicate, folder, &damage)) {
             workload_.skip(task);
             ++reused_;
             return true;
+        }
+        if (!damage.empty()) {
+            progress_.message(fmt::format("{} is damaged and done again: {}", what, damage));
+            std::error_code ignored;  // what cannot be removed cannot be written either, which says so
+            fs::remove_all(replicateFolder(folder, replicate), ignored);
         }
         const auto start = std::chrono::steady_clock::now();
         const auto report = [&](double fraction) { progress_.update(workload_.fraction(task, fraction), what); };
@@ -137,6 +174,7 @@ private:
     Progress& progress_;
     Workload workload_;
     RunOutcome outcome_;
+    std::set<std::size_t> withoutReference_;  // indices into the plan's references
     int reused_ = 0;
 };
 

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,12 +15,13 @@ namespace ulam {
 struct RunOptions {
     std::filesystem::path runDir;
     int threads = 1;
-    bool keepGoing = false;  ///< a replicate that fails is reported, and the others go on
+    bool keepGoing = false;  ///< a replicate or a reference that fails is reported, and the others go on
 };
 
 struct Failure {
-    std::string cell;
-    int replicate;
+    std::string scene;
+    std::string cell;              ///< empty: the scene's reference failed
+    std::optional<int> replicate;  ///< counts from 0 as the folders do; none: none was tried, for want of a reference
     std::string message;
 };
 
@@ -30,7 +32,7 @@ struct RunOutcome {
 };
 
 /// Writes experiment.json, resolved.json, provenance.json, references/ and cells/. Without keepGoing the first failing
-/// replicate throws; CannotWrite always does.
+/// reference or replicate throws; CannotWrite always does.
 RunOutcome runPlan(const Plan& plan, const RunOptions& options, const std::atomic<bool>& interrupt, Progress& progress);
 
 /// RUN_DIR/cells/CELL

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "core/base/file.h"
 #include "core/image/metrics.h"
@@ -99,7 +100,7 @@ public:
     Summarizer(const Plan& plan, const fs::path& runDir) : plan_(plan), runDir_(runDir) {}
 
     Json make(const std::vector<Failure>& failures) {
-        summarizeCells();
+        summarizeCells(failures);
         Json summary = {{"schema_version", 1},
                         {"name", plan_.name},
                         {"primary_metric", plan_.metrics.front()},
@@ -115,8 +116,16 @@ public:
         summary["cells"] = std::move(cells);
         Json failed = Json::array();
         for (const Failure& f : failures) {
-            failed.push_back({{"cell", f.cell}, {"replicate", f.replicate}, {"message", f.message}});
-            warn("{}: replicate {} failed: {}", f.cell, f.replicate, f.message);
+            failed.push_back({{"scene", f.scene},
+                              {"cell", f.cell.empty() ? Json() : Json(f.cell)},
+                              {"replicate", f.replicate ? Json(*f.replicate) : Json()},
+                              {"message", f.message}});
+            // People count from 1, as the progress does; the field counts as the folders do.
+            warn("{}: {}",
+                 f.cell.empty() ? fmt::format("the reference of {} failed", f.scene)
+                 : f.replicate  ? fmt::format("{}: replicate {} failed", f.cell, *f.replicate + 1)
+                                : fmt::format("{} failed", f.cell),
+                 f.message);
         }
         summary["failures"] = std::move(failed);
         summary["warnings"] = warnings_;
@@ -129,9 +138,16 @@ private:
         warnings_.push_back(fmt::format(format, std::forward<Arguments>(arguments)...));
     }
 
-    void summarizeCells() {
+    void summarizeCells(const std::vector<Failure>& failures) {
+        std::set<std::string> withoutReference;
+        for (const Failure& f : failures)
+            if (!f.replicate) withoutReference.insert(f.cell);
         std::map<std::size_t, Reference> references;
         for (const Cell& cell : plan_.cells) {
+            if (withoutReference.contains(cell.task.name)) {
+                cells_.emplace_back();  // comparisons find cells by their index
+                continue;
+            }
             auto known = references.find(cell.reference);
             if (known == references.end())
                 known =

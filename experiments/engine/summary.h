@@ -21,7 +21,8 @@ struct CellSummary {
 CellSummary summarizeCell(const Plan& plan, const Cell& cell, const Reference& reference,
                           const std::filesystem::path& runDir);
 
-/// The whole of summary.json. Cells without a finished replicate are left out, with a warning.
+/// The whole of summary.json. Cells without a finished replicate, or whose reference failed, are left out, with a
+/// warning.
 Json summarize(const Plan& plan, const std::filesystem::path& runDir, const std::vector<Failure>& failures);
 
 /// summary.json, summary.csv, summary.md and summary.tex.

@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
+#include <map>
 #include <set>
+#include <string_view>
 
 #include "core/config/suggest.h"
 
@@ -13,6 +16,10 @@ namespace ulam {
 namespace {
 
 constexpr std::size_t kMostPoints = 100'000;
+/// Beyond 2^53 a double no longer tells neighbouring whole numbers apart.
+constexpr double kLargestWhole = 9007199254740992.0;
+/// What a run has once: a point cannot have its own. Reference, replicates and all that cells are made of can differ.
+constexpr std::array<std::string_view, 5> kWholeRun{"$schema", "name", "baseline", "seed", "metrics"};
 
 /// Points that exclude each other: the values of one key, or the pairs of a zip.
 using Axis = std::vector<SweepPoint>;
@@ -23,11 +30,12 @@ std::vector<Json> logarithmic(const JsonNode& node) {
     const auto steps = node.at("steps").integer();
     if (ends[0] <= 0 || ends[1] <= 0) node.at("log").expected("two numbers above 0");
     if (steps < 2 || steps > 1000) node.at("steps").expected("a whole number from 2 to 1000");
-    const bool whole = ends[0] == std::floor(ends[0]) && ends[1] == std::floor(ends[1]);
+    const auto isWhole = [](double x) { return x == std::floor(x) && x <= kLargestWhole; };
+    const bool whole = isWhole(ends[0]) && isWhole(ends[1]);
     std::vector<Json> values;
     for (std::int64_t i = 0; i < steps; ++i) {
-        double x = ends[0] * std::pow(ends[1] / ends[0], double(i) / double(steps - 1));
-        if (i == steps - 1) x = ends[1];
+        // Exact at both ends; the ratio of the ends may be infinite.
+        const double t = double(i) / double(steps - 1), x = std::pow(ends[0], 1 - t) * std::pow(ends[1], t);
         Json value = whole ? Json(std::llround(x)) : Json(x);
         if (values.empty() || values.back() != value) values.push_back(std::move(value));
     }
@@ -41,9 +49,28 @@ std::vector<Json> valuesOf(const JsonNode& node) {
     return std::vector<Json>(node.json().begin(), node.json().end());
 }
 
+/// A key of a sweep with the node of its values.
+using Key = std::pair<std::string, JsonNode>;
+
+/// All keys in the order in which a point sets them, those of the zip in its place.
+std::vector<Key> keysOf(const JsonNode& sweep) {
+    std::vector<Key> keys;
+    for (const auto& [path, node] : sweep.members()) {
+        if (path == "where")
+            node.fail("\"where\" is not supported in a sweep", "lists, {\"log\": …, \"steps\": …} and \"zip\" are");
+        const std::vector<Key> own = path == "zip" ? node.members() : std::vector<Key>{{path, node}};
+        keys.insert(keys.end(), own.begin(), own.end());
+    }
+    return keys;
+}
+
 /// A misspelt scene or sampler is no new one.
 void checkPath(const JsonNode& node, const std::string& path, const JsonNode& experiment) {
     const std::vector<std::string> steps = pathSteps(path);
+    if (steps[0] == "sweep") node.fail("a sweep cannot change itself");
+    if (std::find(kWholeRun.begin(), kWholeRun.end(), steps[0]) != kWholeRun.end())
+        node.fail(fmt::format("a sweep cannot change {}, which belongs to the whole run", inQuotes(path)),
+                  steps[0] == "seed" ? "independent runs are \"replicates\"" : "");
     if (steps.size() < 3 || (steps[0] != "scenes" && steps[0] != "samplers")) return;
     const auto section = experiment.find(steps[0]);
     if (!section || !section->isObject()) return;  // the parser says what is wrong with it
@@ -51,6 +78,22 @@ void checkPath(const JsonNode& node, const std::string& path, const JsonNode& ex
     for (const auto& [name, member] : section->members()) names.push_back(name);
     if (std::find(names.begin(), names.end(), steps[1]) == names.end())
         unknownName(steps[0].substr(0, steps[0].size() - 1), steps[1], names, node.where());
+}
+
+/// Every value of a point must reach its cells: a later key must not set the same again, nor what contains it.
+void checkKeys(const std::vector<Key>& keys, const JsonNode& experiment) {
+    std::vector<std::pair<std::string, std::vector<std::string>>> earlier;
+    for (const auto& [path, node] : keys) {
+        checkPath(node, path, experiment);
+        std::vector<std::string> steps = pathSteps(path);
+        for (const auto& [other, others] : earlier) {
+            if (others == steps) node.fail(fmt::format("the sweep has the key {} twice", inQuotes(path)));
+            if (others.size() > steps.size() && std::equal(steps.begin(), steps.end(), others.begin()))
+                node.fail(fmt::format("{} replaces what {} has set", inQuotes(path), inQuotes(other)),
+                          "put the shorter key first");
+        }
+        earlier.emplace_back(path, std::move(steps));
+    }
 }
 
 std::string valueText(const Json& value) {
@@ -64,16 +107,21 @@ std::string valueText(const Json& value) {
 
 Axis makeAxis(const std::string& path, const std::vector<Json>& values, const std::string& shortName) {
     constexpr std::size_t kLongest = 24;
-    std::set<std::string> texts;
+    std::map<nlohmann::json, std::size_t> firsts;  // a zip may repeat a value in a column, which is the same value then
+    std::vector<std::size_t> numbers;
+    std::map<std::string, std::size_t> texts;
     bool plain = true;
     for (const Json& value : values) {
+        const std::size_t number = firsts.try_emplace(value, numbers.size() + 1).first->second;
+        numbers.push_back(number);
         const std::string text = valueText(value);
-        plain = plain && value.is_primitive() && text.size() <= kLongest && texts.insert(text).second;
+        plain = plain && value.is_primitive() && text.size() <= kLongest &&
+                texts.try_emplace(text, number).first->second == number;
     }
     const bool numbered = !plain;  // dictionaries, long texts, and values that would look alike
     Axis axis;
     for (std::size_t i = 0; i < values.size(); ++i) {
-        const std::string text = numbered ? fmt::format("no{}", i + 1) : valueText(values[i]);
+        const std::string text = numbered ? fmt::format("no{}", numbers[i]) : valueText(values[i]);
         axis.push_back({SweepValue{path, values[i], fmt::format("{}={}", shortName, text)}});
     }
     return axis;
@@ -87,10 +135,9 @@ std::string shortName(const std::string& path, const std::vector<std::string>& p
     return same > 1 ? path : last(path);
 }
 
-Axis zipAxis(const JsonNode& node, const std::vector<std::string>& paths, const JsonNode& experiment) {
+Axis zipAxis(const JsonNode& node, const std::vector<std::string>& paths) {
     Axis axis;
     for (const auto& [path, values] : node.members()) {
-        checkPath(values, path, experiment);
         const Axis column = makeAxis(path, valuesOf(values), shortName(path, paths));
         if (axis.empty()) axis.resize(column.size());
         if (column.size() != axis.size())
@@ -101,29 +148,42 @@ Axis zipAxis(const JsonNode& node, const std::vector<std::string>& paths, const 
     return axis;
 }
 
+/// Points are the same where their numbers are: 2 is 2.0.
+void refuseRepeated(const Axis& axis, const JsonNode& node) {
+    std::set<std::vector<nlohmann::json>> seen;
+    for (const SweepPoint& point : axis) {
+        std::vector<nlohmann::json> values;
+        std::vector<std::string> texts;
+        for (const SweepValue& value : point) {
+            values.emplace_back(value.value);
+            texts.push_back(fmt::format("{} = {}", value.path, value.value.dump()));
+        }
+        if (!seen.insert(std::move(values)).second)
+            node.fail(fmt::format("the sweep has {} twice", printable(fmt::format("{}", fmt::join(texts, ", ")))));
+    }
+}
+
 }  // namespace
 
 std::vector<SweepPoint> expandSweep(const JsonNode& sweep, const JsonNode& experiment) {
     std::vector<SweepPoint> points = {{}};
     if (sweep.isNull()) return points;
+    const std::vector<Key> keys = keysOf(sweep);
+    checkKeys(keys, experiment);
     std::vector<std::string> paths;
+    for (const auto& [path, node] : keys) paths.push_back(path);
+
+    std::vector<Axis> axes;
+    std::size_t count = 1;
     for (const auto& [path, node] : sweep.members()) {
-        if (path == "where")
-            node.fail("\"where\" is not supported in a sweep", "lists, {\"log\": …, \"steps\": …} and \"zip\" are");
-        if (path == "zip")
-            for (const auto& [inner, values] : node.members()) paths.push_back(inner);
-        else
-            paths.push_back(path);
+        axes.push_back(path == "zip" ? zipAxis(node, paths) : makeAxis(path, valuesOf(node), shortName(path, paths)));
+        refuseRepeated(axes.back(), node);
+        // Before any point is made, and without computing a product that could overflow.
+        if (axes.back().size() > kMostPoints / count)
+            sweep.fail(fmt::format("the sweep has more than {} points", kMostPoints));
+        count *= axes.back().size();
     }
-    for (const auto& [path, node] : sweep.members()) {
-        if (path == "sweep" || path.starts_with("sweep.")) node.fail("a sweep cannot change itself");
-        Axis axis;
-        if (path == "zip") {
-            axis = zipAxis(node, paths, experiment);
-        } else {
-            checkPath(node, path, experiment);
-            axis = makeAxis(path, valuesOf(node), shortName(path, paths));
-        }
+    for (const Axis& axis : axes) {
         std::vector<SweepPoint> next;
         for (const SweepPoint& point : points) {
             for (const SweepPoint& more : axis) {
@@ -132,7 +192,6 @@ std::vector<SweepPoint> expandSweep(const JsonNode& sweep, const JsonNode& exper
             }
         }
         points = std::move(next);
-        if (points.size() > kMostPoints) sweep.fail(fmt::format("the sweep has more than {} points", kMostPoints));
     }
     return points;
 }

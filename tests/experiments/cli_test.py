@@ -5,6 +5,7 @@ import json
 import os
 import pathlib
 import signal
+import struct
 import subprocess
 import tempfile
 import time
@@ -45,6 +46,10 @@ class CliTest(unittest.TestCase):
 
     def write(self, name, content):
         (self.folder / name).write_text(json.dumps(content), encoding="utf8")
+
+    def write_pfm(self, name, value):
+        """A grey picture of 16 x 16."""
+        (self.folder / name).write_bytes(b"Pf\n16 16\n-1.0\n" + struct.pack("<f", value) * 256)
 
     def ulam(self, *arguments, expect=0):
         done = subprocess.run([os.path.abspath(ULAM), *map(str, arguments)], capture_output=True, text=True,
@@ -195,6 +200,15 @@ class Describe(CliTest):
         self.assertIn("flip", self.ulam("compare", "out.exr", "out.exr").stdout)
         self.ulam("compare", "out.exr", "none.exr", expect=5)
 
+    def test_compare_refuses_what_is_no_variance(self):
+        self.render()
+        self.write_pfm("good.pfm", 0.001)
+        self.ulam("compare", "out.exr", "out.exr", "--variance", "good.pfm")
+        for value in -0.001, float("nan"), float("inf"):
+            self.write_pfm("bad.pfm", value)
+            done = self.ulam("compare", "out.exr", "out.exr", "--variance", "bad.pfm", expect=4)
+            self.assertIn("bad.pfm", done.stderr)
+
 
 class Run(CliTest):
     def setUp(self):
@@ -231,6 +245,44 @@ class Run(CliTest):
         (self.folder / "out/cells/wall-bdpt/r001/result.json").unlink()
         self.assertIn("5 replicates were there already, 1 are new",
                       self.ulam("run", "tiny.json", "-o", "out", "--resume").stderr)
+
+    def test_resume_does_damaged_files_again(self):
+        self.ulam("run", "tiny.json", "-o", "out")
+        result = self.folder / "out/cells/wall-bdpt/r001/result.json"
+        result.write_text(json.dumps(dict(json.loads(result.read_text()), task_hash=3)))
+        (self.folder / "out/cells/wall-path/r000/image.exr").write_text("damaged")
+        for reference in self.folder.glob("**/references/*/variance.exr"):
+            reference.write_text("damaged")
+        left = self.folder / "out/cells/wall-path/.ulam-99999999-0.tmp"
+        left.write_text("half")
+        done = self.ulam("run", "tiny.json", "-o", "out", "--resume")
+        self.assertIn("4 replicates were there already, 2 are new", done.stderr)
+        self.assertIn("wall-path, replicate 1 of 3 is damaged and done again", done.stderr)
+        self.assertFalse(left.exists())
+        self.assertIn("6 replicates were there already, 0 are new",
+                      self.ulam("run", "tiny.json", "-o", "out", "--resume").stderr)
+
+    def test_a_reference_with_a_negative_variance_is_exit_4(self):
+        self.render()
+        self.write_pfm("bad.pfm", -0.001)
+        self.write("file.json", dict(EXPERIMENT, reference={"image": "out.exr", "variance": "bad.pfm"}))
+        self.assertIn("bad.pfm", self.ulam("run", "file.json", expect=4).stderr)
+
+    def test_a_scene_without_reference_does_not_stop_the_others(self):
+        self.render()
+        self.write_pfm("bad.pfm", -0.001)
+        self.write("two.json", dict(EXPERIMENT, scenes={"wall": "scene.json", "other": "scene.json"},
+                                    reference={"wall": EXPERIMENT["reference"],
+                                               "other": {"image": "out.exr", "variance": "bad.pfm"}}))
+        self.ulam("run", "two.json", "-o", "out", expect=4)
+        done = self.ulam("run", "two.json", "-o", "out", "--resume", "--keep-going", expect=1)
+        self.assertIn("6 of 12 replicates failed", done.stderr)
+        self.assertIn("the reference of other failed", done.stderr)
+        self.assertIn("wall: bdpt has", done.stdout)
+
+    def test_sweeps_of_the_whole_run_are_refused(self):
+        self.write("sweep.json", dict(EXPERIMENT, sweep={"metrics": [["mse"], ["relmse"]]}))
+        self.assertIn('"metrics"', self.ulam("run", "sweep.json", "--dry-run", expect=4).stderr)
 
     def test_dry_run_writes_nothing(self):
         done = self.ulam("run", "tiny.json", "--dry-run", "--set", "replicates=4")

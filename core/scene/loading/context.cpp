@@ -7,14 +7,27 @@
 #include "core/base/sha256.h"
 
 namespace ulam {
+namespace {
+
+constexpr std::size_t kLargestFile = std::size_t(4) << 30;
+
+}  // namespace
 
 std::string LoadContext::read(const JsonNode& filename) {
     const std::filesystem::path path = filename.string();
     if (path.empty()) filename.expected("the name of a file");
     if (path.is_absolute() || std::find(path.begin(), path.end(), "..") != path.end())
         filename.fail("the path leaves the folder of the scene", "give a path below that folder");
+    namespace fs = std::filesystem;
+    const fs::path file = folder / path;
+    std::error_code failed;
+    // Links may lead out of the folder too, and pipes and devices need not end.
+    const fs::path inside = fs::relative(fs::weakly_canonical(file, failed), fs::weakly_canonical(folder / ".", failed), failed);
+    if (failed || (!inside.empty() && *inside.begin() == ".."))
+        filename.fail("the path leaves the folder of the scene by a link", "give a file below that folder");
+    if (fs::exists(file, failed) && !fs::is_regular_file(file, failed)) filename.fail(fmt::format("{} is no regular file", file.string()));
     try {
-        std::string bytes = readFile(folder / path);
+        std::string bytes = readFile(file, kLargestFile);
         fileHashes.push_back(sha256(bytes));
         return bytes;
     } catch (const Error& error) {

@@ -22,6 +22,8 @@ struct PerspectiveParameters : Perspective::Parameters {
     }
 };
 
+constexpr int kMostPixels = 1 << 26;  // a film has hundreds of bytes a pixel
+
 struct FilmParameters {
     static constexpr int kLargest = 16384;
 
@@ -138,6 +140,8 @@ FilmSettings readFilm(const JsonNode& sensor, const JsonNode& replacement, LoadC
     }
     const JsonNode& last = replacement.isNull() ? sensor : replacement;
     if (!replacement.isNull()) readInto(p, replacement, context);
+    if (double(p.width) * p.height > kMostPixels)
+        last.fail(fmt::format("a film of {} x {} pixels has more than {}", p.width, p.height, kMostPixels));
     FilmSettings film;
     film.size = {p.width,
                  p.height,

@@ -234,4 +234,13 @@ TEST_CASE("metrics refuse unknown names and images of different size") {
     CHECK(mentions(sizes, "3 x 2"));
     CHECK_THROWS_AS(evaluate("mse", a, a, &b), Error);
     CHECK_THROWS_AS(evaluate("flip", empty, empty), Error);
+
+    Image variance(2, 2);
+    CHECK(message([&] { requireVariance(variance, "v.exr"); }).empty());
+    for (const float bad : {-1e-9f, std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN()}) {
+        variance.at(1, 0) = Rgb(0, bad, 0);
+        const std::string refused = message([&] { requireVariance(variance, "v.exr"); });
+        CHECK(mentions(refused, "v.exr"));
+        CHECK(mentions(refused, "(1, 0)"));
+    }
 }

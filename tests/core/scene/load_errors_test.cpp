@@ -91,6 +91,31 @@ TEST_CASE("files: missing, damaged, or outside the scene's folder") {
     CHECK(mentions(errorOf(sceneWith(R"("m": {"type": "ply"})")), "\"filename\" is missing"));
 }
 
+TEST_CASE("files: links out of the folder and what is no file are refused") {
+    const SceneFolder folder("links_test");
+    std::filesystem::create_symlink("/etc/passwd", folder.path / "link.obj");
+    std::filesystem::create_symlink("/dev/zero", folder.path / "zero.obj");
+    std::filesystem::create_directories(folder.path / "folder.obj");
+    const auto error = [&](const std::string& name) {
+        return errorOf(sceneWith(R"("m": {"type": "obj", "filename": ")" + name + "\"}"), ExitCode::InvalidConfig, folder.path);
+    };
+    CHECK(mentions(error("link.obj"), "leaves the folder"));
+    CHECK(mentions(error("zero.obj"), "leaves the folder"));
+    CHECK(mentions(error("folder.obj"), "no regular file"));
+}
+
+TEST_CASE("a scene file holds a scene, not the name of another") {
+    const SceneFolder folder("ring_test");
+    folder.write("ring.json", "\"ring.json\"");
+    CHECK(mentions(errorOf("\"ring.json\"", ExitCode::InvalidConfig, folder.path), "expected a scene"));
+}
+
+TEST_CASE("two entries of one name") {
+    const std::string message = errorOf(sceneWith(R"("a": {"type": "diffuse", "id": "m"}, "b": {"type": "diffuse", "id": "m"})"));
+    CHECK(mentions(message, "another entry is called \"m\""));
+    CHECK(mentions(message, "/a"));
+}
+
 TEST_CASE("scenes that cannot be rendered") {
     CHECK(mentions(errorOf(R"({"type": "scene"})"), "no sensor"));
     CHECK(mentions(errorOf("{}"), "\"type\""));

@@ -14,7 +14,8 @@ struct Seen {
 Seen look(const Scene& scene, const Vec3f& origin, const Vec3f& direction) {
     Hit hit{};
     REQUIRE(scene.rays().intersect(origin, direction, hit));
-    const Vertex v = scene.vertexAt(origin, direction, hit);
+    Vertex v;
+    scene.vertexAt(origin, direction, hit, v);
     return {v.shape, v.position, v.normal, v.shadingNormal};
 }
 
@@ -196,6 +197,17 @@ TEST_CASE("without fov the field of view is that of a 50 mm lens on 35 mm film, 
     };
     CHECK(std::abs(corner("") - 50 / std::hypot(50, 18, 12)) < 1e-6);
     CHECK(std::abs(corner(R"("focal_length": "35mm", )") - 35 / std::hypot(35, 18, 12)) < 1e-6);
+}
+
+TEST_CASE("vertex normals say which side of a mesh is its front, whatever the winding") {
+    for (const char* triangle : {"[0, 1, 2]", "[0, 2, 1]"})
+        for (const char* placement : {"1", "[-1, 1, 1]"}) {
+            const Scene scene = loadText(sceneWith(fmt::format(
+                R"("m": {{"type": "mesh", "positions": [0,0,0, 1,0,0, 0,1,0], "triangles": {}, "normals": [0,0,1, 0,0,1, 0,0,1]}},
+                   "s": {{"type": "rectangle", "to_world": [{{"type": "scale", "value": {}}}]}})",
+                triangle, placement)));
+            for (const Shape& shape : scene.shapes) CHECK(near(std::get<Mesh>(shape.geometry).faceNormals[0], {0, 0, 1}));
+        }
 }
 
 TEST_CASE("the hash changes with the dictionary, the film and the files") {

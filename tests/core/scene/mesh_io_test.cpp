@@ -148,6 +148,16 @@ TEST_CASE("ply: errors") {
         "-2"));
 }
 
+TEST_CASE("ply: vertices in two elements are refused") {
+    const std::string text =
+        "ply\nformat ascii 1.0\n"
+        "element vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
+        "property float nx\nproperty float ny\nproperty float nz\n"
+        "element vertex 2\nproperty float x\nproperty float y\nproperty float z\n"
+        "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0 0 0 1\n1 0 0\n0 1 0\n3 0 1 2\n";
+    CHECK(mentions(plyError(text), "two elements"));
+}
+
 TEST_CASE("damaged mesh files give a mesh or an error") {
     Random random({7, 8}, 0, 0);
     const std::string obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nf 1/1/1 2/1/1 3/1/1\n";

@@ -1,5 +1,7 @@
 #include "experiments/engine/reference.h"
 
+#include <functional>
+
 #include "core/image/image_io.h"
 #include "experiments/engine/replicate.h"
 #include "tests/experiments/engine/tiny.h"
@@ -74,6 +76,57 @@ TEST_CASE("a reference is made in parts and cached across runs", "[reference]") 
     CHECK(readFile(folder / "second" / "references" / planned.key / "image.exr") == readFile(made / "image.exr"));
 }
 
+TEST_CASE("a damaged reference is made again, in the run and in the cache", "[reference]") {
+    const Folder folder;
+    const Plan plan = planOf(folder, tinyExperiment());
+    const PlannedReference& planned = plan.references.at(0);
+    runIn(folder, plan);
+    const fs::path made = folder / "run" / "references" / planned.key, cached = referenceCache() / planned.key;
+    const Json intact = JsonDocument::fromFile(made / "result.json").json();
+    const Reference before = readReference(planned, folder / "run");
+    CHECK(intact["image_sha256"] == imageHash(before.image));
+    CHECK(intact["variance_sha256"] == imageHash(before.variance));
+
+    const auto without = [&](const char* field) {
+        Json less = intact;
+        less.erase(field);
+        return [less](const fs::path& place) { writeFileAtomically(place / "result.json", less.dump()); };
+    };
+    const std::vector<std::function<void(const fs::path&)>> damages = {
+        without("image_sha256"),
+        without("variance_sha256"),
+        without("halves_agree"),
+        without("feature_shares"),
+        without("key"),
+        [](const fs::path& place) { writeFileAtomically(place / "result.json", "{"); },
+        [](const fs::path& place) { writeFileAtomically(place / "image.exr", "text"); },
+        [](const fs::path& place) { writeExr(place / "image.exr", Image(16, 16, Rgb(1))); },
+        [](const fs::path& place) { writeExr(place / "variance.exr", Image(8, 8, Rgb(0))); },
+        [](const fs::path& place) { fs::remove(place / "variance.exr"); },
+        [](const fs::path& place) { fs::remove(place / "result.json"); },
+    };
+    for (const auto& damage : damages) {
+        // In the run it is taken from the cache again.
+        damage(made);
+        CHECK(prepareReference(planned, folder / "run"));
+        CHECK(readReference(planned, folder / "run").image == before.image);
+        // In the cache it is removed, not copied.
+        damage(cached);
+        CHECK_FALSE(isCached(planned));
+        CHECK_FALSE(prepareReference(planned, folder / "second"));
+        CHECK_FALSE(fs::exists(folder / "second" / "references" / planned.key / "image.exr"));
+        CHECK_FALSE(fs::exists(cached));
+        fs::copy(made, cached);
+    }
+
+    // Damaged in both places it is made anew, the same as before, and cached again.
+    damages.front()(made);
+    damages.front()(cached);
+    runIn(folder, plan);
+    CHECK(readReference(planned, folder / "run").image == before.image);
+    CHECK(isCached(planned));
+}
+
 TEST_CASE("what changes a reference changes its key", "[reference]") {
     const Folder folder;
     const auto key = [&](const std::string& path, const Json& value) {
@@ -108,6 +161,12 @@ TEST_CASE("a file is a reference if its variance stands beside it", "[reference]
     writeExr(folder / "known.variance.exr", Image(8, 8, Rgb(1)));
     const Plan wrong = planOf(folder, experiment);
     CHECK(contains(errorOf([&] { prepareReference(wrong.references[0], folder / "run2"); }).second, "16 x 16"));
+
+    writeExr(folder / "known.variance.exr", Image(16, 16, Rgb(-1e-6f)));
+    const Plan negative = planOf(folder, experiment);
+    const auto [code, message] = errorOf([&] { prepareReference(negative.references[0], folder / "run3"); });
+    CHECK(code == ExitCode::InvalidConfig);
+    CHECK(contains(message, "known.variance.exr"));
 }
 
 TEST_CASE("a generator's truth has no variance, and knows the features' shares", "[reference]") {

@@ -112,6 +112,79 @@ TEST_CASE("resuming redoes what is missing and nothing else", "[run]") {
     CHECK(runIn(folder, planOf(folder, experiment)).reused == 0);
 }
 
+TEST_CASE("a damaged replicate is done again", "[run]") {
+    const Folder folder;
+    const Plan plan = planOf(folder, tinyExperiment());
+    runIn(folder, plan);
+    const fs::path result = resultOf(folder, "wall-path", 1), replicate = result.parent_path();
+    const Json intact = JsonDocument::fromFile(result).json();
+    const Task& task = plan.cells[0].task;
+    REQUIRE(task.name == "wall-path");
+    const auto check = [&](const std::string& reason) {
+        std::string damage;
+        CHECK_FALSE(finishedReplicate(task, 1, folder / "run" / "cells" / "wall-path", &damage));
+        CHECK(contains(damage, reason));
+        CHECK(runIn(folder, plan).rendered == 1);
+        CHECK(JsonDocument::fromFile(result).json()["image_sha256"] == intact["image_sha256"]);
+    };
+    for (const auto& [key, value] :
+         std::vector<std::pair<std::string, Json>>{{"task_hash", 3},
+                                                   {"replicate", "one"},
+                                                   {"image_sha256", "0"},
+                                                   {"image_sha256", nullptr},
+                                                   {"wall_seconds", "long"},
+                                                   {"feature_energy", 1},
+                                                   {"non_finite", {{"radiance", -1}}},
+                                                   {"mutation_statistics", {{"lens", {{"proposed", 1}}}}},
+                                                   {"snapshots", Json::array()},
+                                                   {"snapshots", {1, 2}}}) {
+        Json damaged = intact;
+        damaged[key] = value;
+        writeFileAtomically(result, damaged.dump());
+        check(key);
+    }
+    writeFileAtomically(result, "[]");
+    check("an object");
+
+    writeExr(replicate / "image.exr", Image(16, 16, Rgb(1)));
+    check("image.exr");
+    writeFileAtomically(replicate / "image.exr", "text");
+    check("image.exr");
+    fs::remove(replicate / "image.exr");
+    check("image.exr");
+    writeExr(replicate / "snapshots/s01.exr", Image(8, 8, Rgb(1)));
+    check("s01.exr");
+    fs::remove(replicate / "snapshots/s00.exr");
+    check("s00.exr");
+
+    // What another task made is no damage.
+    Json other = intact;
+    other["task_hash"] = "another";
+    writeFileAtomically(result, other.dump());
+    std::string damage;
+    CHECK_FALSE(finishedReplicate(task, 1, folder / "run" / "cells" / "wall-path", &damage));
+    CHECK(damage.empty());
+    CHECK(runIn(folder, plan).rendered == 1);
+}
+
+TEST_CASE("what killed processes left is removed, what others write is not", "[run]") {
+    const Folder folder;
+    const fs::path cell = folder / "run" / "cells" / "wall-path";
+    fs::create_directories(cell);
+    // Above the largest number a process can have.
+    const std::vector<fs::path> gone = {folder / "run" / ".ulam-99999999-0.tmp", cell / ".ulam-99999999-12.tmp",
+                                        cell / fmt::format(".ulam-{}-3.tmp", ::getpid())};
+    const std::vector<fs::path> kept = {cell / fmt::format(".ulam-{}-3.tmp", ::getppid()), cell / ".ulam-99999999.tmp",
+                                        cell / ".ulam-99999999-0.tmp.exr", cell / "ulam-99999999-0.tmp",
+                                        cell / ".ulam--1-0.tmp"};
+    for (const fs::path& file : gone) writeFileAtomically(file, "half");
+    for (const fs::path& file : kept) writeFileAtomically(file, "whole");
+    removeTemporaries(folder / "run");
+    for (const fs::path& file : gone) CHECK_FALSE(fs::exists(file));
+    for (const fs::path& file : kept) CHECK(fs::exists(file));
+    removeTemporaries(folder / "none");
+}
+
 TEST_CASE("a signal stops a run and keeps what is finished", "[run]") {
     const Folder folder;
     Json experiment = tinyExperiment();
@@ -150,6 +223,48 @@ TEST_CASE("a failing replicate ends the run, or is reported while the others go 
     const Json summary = summarize(plan, folder / "run", outcome.failures);
     CHECK(summary["cells"][2]["replicates"] == 2);
     CHECK(summary["failures"][0]["message"] == "failed on purpose");
+    CHECK(summary["failures"][0]["replicate"] == 1);
+    // To people it is the second one, as in the progress.
+    CHECK(contains(summary["warnings"].dump(), "wall-broken: replicate 2 failed"));
+}
+
+TEST_CASE("a failing reference ends the run, or its scene is reported while the others go on", "[run]") {
+    const Folder folder;
+    Json experiment = tinyExperiment();
+    experiment["scenes"]["other"] = tinyScene();
+    experiment["reference"] = {{"wall", experiment["reference"]},
+                               {"other", {{"sampler", {{"type", "failing"}}}, {"budget", {{"spp", 64}}}}}};
+    const Plan plan = planOf(folder, experiment);
+    CHECK(contains(errorOf([&] { runIn(folder, plan); }).second, "failed on purpose"));
+
+    const RunOutcome outcome = runIn(folder, plan, true);
+    CHECK(outcome.rendered == 6);
+    REQUIRE(outcome.failures.size() == 3);
+    CHECK(outcome.failures[0].scene == "other");
+    CHECK(outcome.failures[0].cell.empty());
+    CHECK(outcome.failures[0].message == "failed on purpose");
+    for (const std::size_t i : {1, 2}) {
+        CHECK(contains(outcome.failures[i].cell, "other-"));
+        CHECK_FALSE(outcome.failures[i].replicate);
+    }
+    CHECK_FALSE(fs::exists(resultOf(folder, "other-path", 0)));
+
+    const Json summary = summarize(plan, folder / "run", outcome.failures);
+    REQUIRE(summary["cells"].size() == 2);
+    CHECK(summary["cells"][0]["scene"] == "wall");
+    CHECK(summary["comparisons"].size() == 1);
+    CHECK(summary["failures"][0]["cell"].is_null());
+    CHECK(summary["failures"][1]["replicate"].is_null());
+    CHECK(contains(summary["warnings"].dump(), "the reference of other failed: failed on purpose"));
+    CHECK(contains(summary["warnings"].dump(), "other-bdpt failed: its reference failed"));
+}
+
+TEST_CASE("a reference that cannot be written ends the run in any case", "[run]") {
+    const Folder folder;
+    fs::create_directories(folder / "run");
+    writeFileAtomically(folder / "run" / "references", "a file");
+    const Plan plan = planOf(folder, tinyExperiment());
+    CHECK(errorOf([&] { runIn(folder, plan, true); }).first == ExitCode::CannotWrite);
 }
 
 TEST_CASE("a folder that cannot be written ends the run at once", "[run]") {

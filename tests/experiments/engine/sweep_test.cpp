@@ -31,13 +31,20 @@ TEST_CASE("no sweep is one empty point", "[sweep]") {
 }
 
 TEST_CASE("a logarithmic range has equal ratios and exact ends", "[sweep]") {
-    const auto whole = expand({{"seed", {{"log", {100, 10000}}, {"steps", 3}}}});
+    const auto whole = expand({{"max_depth", {{"log", {100, 10000}}, {"steps", 3}}}});
     REQUIRE(whole.size() == 3);
     CHECK(whole[1][0].value == 1000);
     CHECK(whole[1][0].value.is_number_integer());
     const auto real = expand({{"budget.time", {{"log", {0.5, 8}}, {"steps", 5}}}});
     CHECK(real[2][0].value.get<double>() == Approx(2).epsilon(1e-12));
     CHECK(real[4][0].value == 8.0);
+
+    // Whole numbers that no integer holds, and ends whose ratio is infinite.
+    const auto large = expand({{"budget.spp", {{"log", {1, 1e30}}, {"steps", 4}}}});
+    CHECK(large[1][0].value.get<double>() == Approx(1e10));
+    CHECK(large[3][0].value == 1e30);
+    const auto wide = expand({{"budget.time", {{"log", {1e-200, 1e200}}, {"steps", 3}}}});
+    CHECK(wide[1][0].value.get<double>() == Approx(1));
 }
 
 TEST_CASE("zipped keys go together", "[sweep]") {
@@ -60,6 +67,44 @@ TEST_CASE("labels are fit for folders and differ", "[sweep]") {
     // Two keys with the same last step are told apart by the whole path.
     const auto twins = expand({{"samplers.path.rr_depth", {3}}, {"samplers.bdpt.rr_depth", {3}}});
     CHECK(twins[0][0].label == "samplers.path.rr_depth=3");
+    // A column of a zip may repeat a value, which keeps its label.
+    const auto zipped = expand({{"zip", {{"max_depth", {2, 2, 3}}, {"budget.spp", {8, 16, 16}}}}});
+    CHECK(zipped[0][0].label == "max_depth=2");
+    CHECK(zipped[1][0].label == "max_depth=2");
+}
+
+TEST_CASE("keys of the whole run cannot be swept", "[sweep]") {
+    for (const char* key : {"name", "$schema", "metrics", "metrics.0", "baseline", "seed"}) {
+        for (const Json& sweep : {Json{{key, {"a", "b"}}}, Json{{"zip", {{key, {"a", "b"}}}}}}) {
+            const auto [code, message] = errorOf([&] { expand(sweep); });
+            CHECK(code == ExitCode::InvalidConfig);
+            CHECK(contains(message, fmt::format("\"{}\"", key)));
+            CHECK(contains(message, "whole run"));
+        }
+    }
+    CHECK(contains(errorOf([] { expand({{"zip", {{"sweep.max_depth", {1, 2}}}}}); }).second, "itself"));
+    CHECK(expand({{"replicates", {2, 3}}, {"reference.budget.spp", {64, 128}}}).size() == 4);
+}
+
+TEST_CASE("keys that overwrite each other, and equal points, are refused", "[sweep]") {
+    const auto message = [](const Json& sweep) { return errorOf([&] { expand(sweep); }).second; };
+    CHECK(contains(message({{"max_depth", {2, 3}}, {"zip", {{"max_depth", {4, 5}}, {"budget.spp", {8, 16}}}}}),
+                   "\"max_depth\" twice"));
+    const Json depth = {4, 5}, whole = {{{"type", "path"}}, {{"type", "bdpt"}}};
+    CHECK(contains(message({{"samplers.path.rr_depth", depth}, {"samplers.path", whole}}), "replaces"));
+    CHECK(expand({{"samplers.path", whole}, {"samplers.path.rr_depth", depth}}).size() == 4);
+
+    CHECK(contains(message({{"max_depth", {2, 3, 2.0}}}), "max_depth = 2.0 twice"));
+    CHECK(contains(message({{"zip", {{"max_depth", {2, 2}}, {"budget.spp", {8, 8.0}}}}}), "twice"));
+    CHECK(contains(message({{"film", {{{"width", 8}, {"height", 4}}, {{"height", 4}, {"width", 8}}}}}), "twice"));
+}
+
+TEST_CASE("a grid of too many points is refused before it is made", "[sweep]") {
+    Json sweep = Json::object();
+    // 1000^8 points: more than a word counts.
+    for (const char* key : {"a", "b", "c", "d", "e", "f", "g", "h"})
+        sweep[key] = {{"log", {1.5, 1000}}, {"steps", 1000}};
+    CHECK(contains(errorOf([&] { expand(sweep); }).second, "more than 100000 points"));
 }
 
 TEST_CASE("what is no sweep is refused", "[sweep]") {

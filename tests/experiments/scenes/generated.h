@@ -15,7 +15,9 @@ inline SceneDescription describeGenerator(const Json& generator) {
 inline Vertex firstHit(const Scene& scene, const Vec3f& origin, const Vec3f& direction) {
     Hit hit{};
     REQUIRE(scene.rays().intersect(origin, direction, hit));
-    return scene.vertexAt(origin, direction, hit);
+    Vertex v;
+    scene.vertexAt(origin, direction, hit, v);
+    return v;
 }
 
 inline uint32_t shapeNamed(const Scene& scene, const std::string& id) {

@@ -99,7 +99,8 @@ TEST_CASE("cornell_box: every wall and block faces the room") {
                 REQUIRE(direction.z < 0);
                 continue;
             }
-            const Vertex v = scene.vertexAt(origin, direction, hit);
+            Vertex v;
+            scene.vertexAt(origin, direction, hit, v);
             INFO(variant << " " << scene.shapes[v.shape].id);
             REQUIRE(dot(v.normal, direction) < 0);
         }
