@@ -2,6 +2,10 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
+#include <new>
+#include <stdexcept>
+#include <system_error>
 
 #include "core/base/error.h"
 #include "core/config/suggest.h"
@@ -12,14 +16,49 @@ namespace {
 
 using ulam::ExitCode;
 
+bool isOptionGroup(const CLI::App* command) {
+    return command->get_name().empty();
+}
+
 /// CLI11 would only say that the word was not expected.
 void checkCommand(const CLI::App& app, const std::string& word) {
     std::vector<std::string> names;
-    for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
-    if (word.starts_with("-") || std::find(names.begin(), names.end(), word) != names.end()) return;
+    for (const CLI::App* command : app.get_subcommands({}))
+        if (!isOptionGroup(command)) names.push_back(command->get_name());
+    if (names.empty() || word.starts_with("-") || std::find(names.begin(), names.end(), word) != names.end()) return;
     const std::string hint = ulam::didYouMean(word, names);
     ulam::fail(ExitCode::Usage, "unknown command {}{}{}; known: {}", ulam::inQuotes(word), hint.empty() ? "" : ", ",
                hint, ulam::listInQuotes(names));
+}
+
+std::vector<std::string> optionNames(const CLI::App& command) {
+    std::vector<std::string> names;
+    for (const CLI::Option* option : command.get_options()) {
+        for (const std::string& name : option->get_snames()) names.push_back("-" + name);
+        for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    }
+    for (const CLI::App* group : command.get_subcommands(isOptionGroup))
+        for (const std::string& name : optionNames(*group)) names.push_back(name);
+    return names;
+}
+
+/// Unknown options and commands that are left over; CLI11 complains of what is missing first, which may be the same.
+void checkLeftOver(const CLI::App& command, const std::string& fullName) {
+    for (const std::string& word : command.remaining()) {
+        if (word == "--") break;  // words after it are no options
+        checkCommand(command, word);
+        if (!word.starts_with("-")) continue;
+        const std::string option = word.substr(0, word.find('='));
+        // Of one letter every other one is near.
+        const std::string hint = option.size() > 2 ? ulam::didYouMean(option, optionNames(command)) : "";
+        ulam::fail(ExitCode::Usage, "unknown option {} of {}; {}", ulam::inQuotes(option), fullName,
+                   hint.empty() ? fmt::format("see {} --help", fullName) : hint);
+    }
+    for (const CLI::App* given : command.get_subcommands()) checkLeftOver(*given, fullName + " " + given->get_name());
+}
+
+[[noreturn]] void failToPrint() {
+    ulam::fail(ExitCode::CannotWrite, "cannot write to the standard output");
 }
 
 ExitCode runProgram(int argc, char* argv[]) {
@@ -40,10 +79,27 @@ ExitCode runProgram(int argc, char* argv[]) {
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
-        return app.exit(error) == 0 ? ExitCode::Done : ExitCode::Usage;
+        if (error.get_exit_code() != 0) checkLeftOver(app, app.get_name());
+        if (app.exit(error) != 0) return ExitCode::Usage;
+    } catch (const std::system_error&) {
+        // Of a result beyond the stream's buffer it is fmt::print that fails.
+        if (std::ferror(stdout)) failToPrint();
+        throw;
     }
-    if (std::fflush(stdout) != 0) ulam::fail(ExitCode::CannotWrite, "cannot write to the standard output");
+    if (std::fflush(stdout) != 0 || std::ferror(stdout)) failToPrint();
     return ExitCode::Done;
+}
+
+/// Not with fmt::print, which throws where stderr cannot be written.
+int report(ExitCode code, const std::string& message) {
+    std::fputs(("ulam: " + message + "\n").c_str(), stderr);
+    return static_cast<int>(code);
+}
+
+int reportOutOfMemory(const std::exception& error) {
+    return report(
+        ExitCode::InvalidConfig,
+        fmt::format("out of memory: image, scene or parameters ask for more than there is ({})", error.what()));
 }
 
 }  // namespace
@@ -52,10 +108,16 @@ int main(int argc, char* argv[]) {
     try {
         return static_cast<int>(runProgram(argc, argv));
     } catch (const ulam::Error& error) {
-        fmt::print(stderr, "ulam: {}\n", error.what());
-        return static_cast<int>(error.code());
+        return report(error.code(), error.what());
+    } catch (const std::bad_alloc& error) {
+        return reportOutOfMemory(error);
+    } catch (const std::length_error& error) {
+        return reportOutOfMemory(error);
+    } catch (const std::filesystem::filesystem_error& error) {
+        const bool missing = error.code() == std::errc::no_such_file_or_directory;
+        return report(missing ? ExitCode::InputMissing : ExitCode::CannotWrite, error.what());
     } catch (const std::exception& error) {
-        fmt::print(stderr, "ulam: internal error: {}\n", error.what());
-        return static_cast<int>(ExitCode::SomeCellsFailed);
+        if (std::ferror(stderr)) return static_cast<int>(ExitCode::CannotWrite);
+        return report(ExitCode::SomeCellsFailed, fmt::format("internal error: {}", error.what()));
     }
 }

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <charconv>
 #include <cmath>
 #include <system_error>
 #include <thread>
@@ -18,9 +19,12 @@ namespace {
 namespace fs = std::filesystem;
 
 void openPlugin(const std::string& file) {
+    std::error_code error;
+    if (!fs::exists(file, error))
+        fail(ExitCode::InputMissing, "cannot open the plug-in {}: {}", inQuotes(file),
+             error ? error.message() : "no such file");
     // Without a slash dlopen would search the system's folders only.
     const std::string path = fs::absolute(file).string();
-    if (!fs::exists(path)) fail(ExitCode::InputMissing, "cannot open the plug-in {}: no such file", file);
     if (!::dlopen(path.c_str(), RTLD_NOW | RTLD_GLOBAL))
         fail(ExitCode::InvalidConfig, "cannot open the plug-in {}: {}", file, ::dlerror());
 }
@@ -71,6 +75,20 @@ std::shared_ptr<int> addThreadsOption(CLI::App& command) {
     return threads;
 }
 
+std::shared_ptr<std::uint64_t> addSeedOption(CLI::App& command) {
+    auto seed = std::make_shared<std::uint64_t>(1);
+    // CLI11's own conversion wraps what is out of range.
+    const auto parse = [seed](const std::string& text) {
+        const char* end = text.data() + text.size();
+        const auto [stop, error] = std::from_chars(text.data(), end, *seed);
+        if (error != std::errc() || stop != end)
+            throw CLI::ValidationError(
+                "--seed", fmt::format("expected a whole number from 0 to 2^64 - 1, found {}", inQuotes(text)));
+    };
+    command.add_option_function<std::string>("--seed", parse, "master seed")->type_name("UINT")->default_str("1");
+    return seed;
+}
+
 CLI::Validator positiveNumber() {
     const auto check = [](const std::string& text) {
         double x = 0;
@@ -84,9 +102,20 @@ void checkWritable(const std::string& file) {
     const fs::path path = file;
     const fs::path folder = path.has_parent_path() ? path.parent_path() : ".";
     int error = ::access(folder.c_str(), W_OK) == 0 ? 0 : errno;
-    if (!error && !fs::is_directory(folder)) error = ENOTDIR;
-    if (!error && fs::is_directory(path)) error = EISDIR;
+    std::error_code failed;
+    if (!error && !fs::is_directory(folder, failed)) error = ENOTDIR;
+    if (!error && fs::is_directory(path, failed)) error = EISDIR;
+    // A name that is too long, a ring of links.
+    if (!error && !fs::exists(path, failed) && failed) error = failed.value();
     if (error) fail(ExitCode::CannotWrite, "cannot write {}: {}", file, std::generic_category().message(error));
+}
+
+bool isSameFile(const std::string& a, const std::string& b) {
+    std::error_code failed;
+    // What is not there yet stays relative unless it is made absolute first.
+    const auto real = [&](const std::string& file) { return fs::weakly_canonical(fs::absolute(file, failed), failed); };
+    const fs::path first = real(a);
+    return !first.empty() && first == real(b);
 }
 
 }  // namespace ulam

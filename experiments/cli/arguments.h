@@ -2,6 +2,7 @@
 // Arguments that several commands share.
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -28,10 +29,16 @@ void addPluginOption(CLI::App& command);
 /// `--threads N`, by default the number of cores.
 std::shared_ptr<int> addThreadsOption(CLI::App& command);
 
+/// `--seed N`, by default 1.
+std::shared_ptr<std::uint64_t> addSeedOption(CLI::App& command);
+
 /// Refuses what is not a finite number above 0.
 CLI::Validator positiveNumber();
 
 /// Fails with CannotWrite unless a file of this name can be made: better before hours of work than after.
 void checkWritable(const std::string& file);
+
+/// Whether two names stand for one file, which need not be there yet.
+bool isSameFile(const std::string& a, const std::string& b);
 
 }  // namespace ulam

@@ -1,5 +1,6 @@
 // ulam new mutation NAME: a file to start from.
 
+#include <cctype>
 #include <filesystem>
 
 #include "core/base/error.h"
@@ -17,6 +18,10 @@ constexpr const char* kTemplate =
 // A mutation proposes, the kernel decides. This one works on primary numbers; one that works on paths returns
 // Space::Path, fills y.path and y.factors (see core/mcmc/path_edit.h) and states both densities in the proposal.
 // Try it:  ulam verify --mutation @name@
+
+#include <cmath>
+#include <limits>
+#include <optional>
 
 #include "core/mcmc/small_steps.h"
 
@@ -60,7 +65,8 @@ ULAM_REGISTER_MUTATION(@Class@, "@name@", "uniform steps of all primary numbers"
 }  // namespace ulam
 )";
 
-/// "my_step" → "MyStep"
+/// "my_step" → "MyStepMutation". The ending keeps it apart from the framework's names: a class Sample or Random would
+/// hide the one that it needs.
 std::string className(const std::string& name) {
     std::string out;
     bool upper = true;
@@ -70,7 +76,7 @@ std::string className(const std::string& name) {
         else
             out += upper ? char(std::toupper(c)) : c, upper = false;
     }
-    return out;
+    return out + "Mutation";
 }
 
 std::string replaced(std::string text, const std::string& from, const std::string& to) {
@@ -80,8 +86,9 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 }
 
 void newMutation(const std::string& name, const std::filesystem::path& folder) {
-    const bool valid = !name.empty() && std::islower(name[0]) &&
-                       name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == std::string::npos;
+    constexpr std::string_view letters = "abcdefghijklmnopqrstuvwxyz0123456789_";
+    const bool valid = !name.empty() && letters.substr(0, 26).find(name[0]) != letters.npos &&
+                       name.find_first_not_of(letters) == std::string::npos;
     if (!valid)
         fail(ExitCode::Usage, "expected a name of lower-case letters, digits and _, such as my_step, found {}",
              inQuotes(name));
@@ -89,10 +96,11 @@ void newMutation(const std::string& name, const std::filesystem::path& folder) {
         if (entry->name == name)
             fail(ExitCode::Usage, "mutation {} exists already, in {}", inQuotes(name), entry->file);
     const auto file = folder / (name + ".cpp");
-    if (!std::filesystem::is_directory(folder))
+    std::error_code ignored;  // what is wrong with the file's name is said by writing it
+    if (!std::filesystem::is_directory(folder, ignored))
         fail(ExitCode::InputMissing, "no folder {}: start this in the project's folder, or give --folder",
              folder.string());
-    if (std::filesystem::exists(file)) fail(ExitCode::Usage, "{} exists already", file.string());
+    if (std::filesystem::exists(file, ignored)) fail(ExitCode::Usage, "{} exists already", file.string());
     writeFileAtomically(file, replaced(replaced(kTemplate, "@name@", name), "@Class@", className(name)));
     fmt::print("{}\n", file.string());
 }

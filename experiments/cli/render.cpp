@@ -18,15 +18,38 @@ struct RenderArguments {
     std::string scene, sampler, output, stats;
     std::vector<std::string> assignments;
     std::optional<double> seconds, spp, mutations, rays;
-    std::uint64_t seed = 1;
+    std::shared_ptr<std::uint64_t> seed;
     std::shared_ptr<int> threads;
     bool quiet = false;
 };
 
-/// Hands every `--set` to the document that its first step names. The film is one of its own, since a scene may not
-/// have any.
+/// The film is a document of its own, since a scene may not have any: a scene that is nothing but a film.
+JsonDocument emptyFilm() {
+    return JsonDocument::fromText(
+        R"({"type": "scene", "sensor": {"type": "perspective", "film": {"type": "hdrfilm"}}})", "the film");
+}
+
+/// What a film document says beyond emptyFilm().
+Json filmOptions(const JsonDocument& film) {
+    Json options = film.json()["sensor"]["film"];
+    if (options["type"] == "hdrfilm") options.erase("type");
+    return options;
+}
+
+/// Building a scene takes bare JSON for a film. Where it is refused, the same film inside its document is refused with
+/// the `--set` that is to blame.
+void checkFilm(const SceneDescription& scene, const JsonDocument& film) {
+    try {
+        scene.filmSize(filmOptions(film));
+    } catch (const Error&) {
+        SceneDescription::fromNode(film.root(), ".").filmSize();
+        throw;
+    }
+}
+
+/// Hands every `--set` to the document that its first step names.
 void applyAssignments(const std::vector<std::string>& assignments, JsonDocument& scene, JsonDocument& sampler,
-                      Json& film) {
+                      JsonDocument& film) {
     for (const std::string& assignment : assignments) {
         const auto [path, text] = splitAssignment(assignment);
         const auto below = [&, &path = path](std::string_view prefix) {
@@ -34,7 +57,7 @@ void applyAssignments(const std::vector<std::string>& assignments, JsonDocument&
         };
         const std::string origin = "--set " + assignment;
         if (const auto inFilm = below("scene.film."))
-            setByPath(film, *inFilm, text);
+            film.set("sensor.film." + *inFilm, overrideValue(text), origin);
         else if (const auto inScene = below("scene."))
             scene.set(*inScene, overrideValue(text), origin);
         else if (const auto inSampler = below("sampler."))
@@ -47,18 +70,22 @@ void applyAssignments(const std::vector<std::string>& assignments, JsonDocument&
 
 void renderImage(const RenderArguments& a) {
     if (!a.output.ends_with(".exr")) fail(ExitCode::Usage, "expected -o NAME.exr, found {}", inQuotes(a.output));
+    if (!a.stats.empty() && isSameFile(a.stats, a.output))
+        fail(ExitCode::Usage, "-o and --stats name the same file, {}", inQuotes(a.stats));
     checkWritable(a.output);
     if (!a.stats.empty()) checkWritable(a.stats);
 
     auto [sceneDocument, sceneFolder] = sceneArgument(a.scene);
     auto [samplerDocument, samplerFolder] = samplerArgument(a.sampler);
-    Json film = Json::object();
+    JsonDocument film = emptyFilm();
     applyAssignments(a.assignments, sceneDocument, samplerDocument, film);
     const auto sampler = Registry<Sampler>::instance().create(samplerDocument.root());
 
     Progress progress(a.quiet);
     const auto start = std::chrono::steady_clock::now();
-    const Scene scene = SceneDescription::fromNode(sceneDocument.root(), sceneFolder).build(film);
+    const SceneDescription description = SceneDescription::fromNode(sceneDocument.root(), sceneFolder);
+    checkFilm(description, film);
+    const Scene scene = description.build(filmOptions(film));
     for (const std::string& warning : scene.warnings) progress.message("warning: " + warning);
 
     RunIdentity run;
@@ -66,8 +93,8 @@ void renderImage(const RenderArguments& a) {
     run.sceneHash = scene.hash;
     run.parameters = resolveSampler(samplerDocument.root());
     run.sampler = run.parameters["type"];
-    run.seed = a.seed;
-    run.key = makeKey(a.seed);
+    run.seed = *a.seed;
+    run.key = makeKey(run.seed);
     run.threads = *a.threads;
     run.setupSeconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 
@@ -80,7 +107,10 @@ void renderImage(const RenderArguments& a) {
     const RenderResult result = render(scene, *sampler, options);
     progress.clear();
 
+    if (result.interrupted && isBlack(result.image))
+        failIfSignalled("nothing was found until then, and nothing is written");
     if (!result.interrupted) refuseBlackImage(result);
+    for (const std::string& warning : warningsOf(result)) progress.message("warning: " + warning);
     writeExr(a.output, result.image, imageAttributes(run));
     const std::filesystem::path output = a.output;
     for (const auto& [name, image] : result.statistics.extraImages)
@@ -107,7 +137,7 @@ void addRenderCommand(CLI::App& app) {
     budget->add_option("--spp", a->spp, "samples (of chains: mutations) per pixel")->check(positiveNumber());
     budget->add_option("--mutations", a->mutations, "mutations of Markov chains")->check(positiveNumber());
     budget->add_option("--rays", a->rays, "rays traced")->check(positiveNumber());
-    command.add_option("--seed", a->seed, "master seed")->capture_default_str();
+    a->seed = addSeedOption(command);
     a->threads = addThreadsOption(command);
     command.add_option("-o,--output", a->output, "image to write")->type_name("OUT.exr")->required();
     command.add_option("--stats", a->stats, "numbers to write, as in a cell's result.json")->type_name("OUT.json");

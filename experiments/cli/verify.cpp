@@ -12,7 +12,7 @@ namespace {
 struct VerifyArguments {
     std::vector<std::string> mutations, samplers;
     std::string level = "quick";
-    std::uint64_t seed = 1;
+    std::shared_ptr<std::uint64_t> seed;
     std::shared_ptr<int> threads;
     bool json = false;
 };
@@ -23,7 +23,7 @@ void verifyRegistered(const VerifyArguments& a) {
     options.mutations = a.mutations;
     options.samplers = a.samplers;
     options.level = a.level == "full" ? verify::Level::Full : verify::Level::Quick;
-    options.seed = a.seed;
+    options.seed = *a.seed;
     options.threads = *a.threads;
     options.progress = [&](double fraction, const std::string& what) { progress.update(fraction, what); };
     options.finished = [&](const verify::SubjectReport& subject) {
@@ -55,7 +55,7 @@ void addVerifyCommand(CLI::App& app) {
     command.add_option("--level", a->level, "quick: about 20 s a mutation; full: as far as the audit goes")
         ->check(CLI::IsMember({"quick", "full"}))
         ->capture_default_str();
-    command.add_option("--seed", a->seed, "master seed")->capture_default_str();
+    a->seed = addSeedOption(command);
     a->threads = addThreadsOption(command);
     command.add_flag("--json", a->json, "as JSON");
     addPluginOption(command);

@@ -6,6 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/base/fixed_sum.h"
 #include "core/base/sha256.h"
 #include "core/mcmc/mutation_mix.h"
 #include "experiments/engine/mixing.h"
@@ -127,8 +128,18 @@ bool isBlack(const Image& image) {
     return std::all_of(image.pixels.begin(), image.pixels.end(), black);
 }
 
+std::vector<std::string> warningsOf(const RenderResult& result) {
+    std::vector<std::string> warnings;
+    for (const auto& [cause, count] : result.statistics.nonFinite)
+        warnings.push_back(fmt::format("{} values of {} were refused, being not finite or beyond {:g}", count, cause,
+                                       FixedSum::kLargestTerm));
+    return warnings;
+}
+
 void refuseBlackImage(const RenderResult& result) {
     if (!isBlack(result.image)) return;
+    for (const std::string& warning : warningsOf(result)) fail(ExitCode::InvalidConfig, "the image is black: {}", warning);
+    if (result.units == 0) fail(ExitCode::InvalidConfig, "the budget was spent before the first sample or mutation was made");
     fail(ExitCode::InvalidConfig,
          "no path carried light: all of {} samples and mutations found nothing. Is the camera inside a wall or "
          "looking away, does nothing emit, is max_depth too small (1 shows emitters only), or the budget?",

@@ -35,6 +35,9 @@ ImageAttributes imageAttributes(const RunIdentity& run);
 /// Every pixel is 0.
 bool isBlack(const Image& image);
 
+/// What a user should hear about a run, in words: contributions that were refused, by cause.
+std::vector<std::string> warningsOf(const RenderResult& result);
+
 /// Fails with InvalidConfig where no path carried light.
 void refuseBlackImage(const RenderResult& result);
 

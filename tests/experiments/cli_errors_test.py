@@ -47,8 +47,9 @@ class Files(CliTest):
         (self.folder / "link").symlink_to("below")
         for output, stats in (("a.exr", "a.exr"), ("a.exr", "./a.exr"), ("a.exr", self.folder / "below/../a.exr"),
                               ("below/a.exr", "link/a.exr")):
-            self.assertIn("same file", self.refused(2, "render", "scene.json", "--sampler", "path", "--spp", 1, "-o", output,
-                                                    "--stats", stats))
+            message = self.refused(2, "render", "scene.json", "--sampler", "path", "--spp", 1, "-o", output,
+                                   "--stats", stats)
+            self.assertIn("same file", message)
         self.render("--stats", "below/out.exr")
 
     def test_an_interrupted_render_without_an_image_keeps_the_old_one(self):
@@ -91,8 +92,9 @@ class Resources(CliTest):
         start = [PROGRAM, "--version"]
         if subprocess.run(start, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, preexec_fn=little).returncode != 0:
             self.skipTest("sanitizers need more")
-        done = subprocess.run([PROGRAM, "render", "scene.json", "--sampler", "path", "--spp", "1", "--threads", "1", "--quiet",
-                               "--set", "scene.film.width=8192", "--set", "scene.film.height=8192", "-o", "out.exr"],
+        done = subprocess.run([PROGRAM, "render", "scene.json", "--sampler", "path", "--spp", "1", "--threads", "1",
+                               "--quiet", "-o", "out.exr", "--set", "scene.film.width=8192",
+                               "--set", "scene.film.height=8192"],
                               cwd=self.folder, stderr=subprocess.PIPE, text=True, timeout=60, preexec_fn=little)
         self.assertEqual(done.returncode, 4, done.stderr)
         self.assertIn("ulam: out of memory: ", done.stderr)
@@ -138,9 +140,9 @@ class New(CliTest):
         for name in names:
             self.ulam("new", "mutation", name, "--folder", ".")
         (self.folder / "all.cpp").write_text("".join(f'#include "{name}.cpp"\n' for name in names))
-        flags = subprocess.run(["pkg-config", "--cflags", "Imath"], stdout=subprocess.PIPE, text=True, check=True).stdout.split()
-        subprocess.run(["g++", "-std=c++20", "-march=native", "-fsyntax-only", "-Wall", "-Wextra", "-Werror", "-I", ROOT, *flags, "all.cpp"],
-                       cwd=self.folder, check=True, timeout=300)
+        flags = subprocess.run(["pkg-config", "--cflags", "Imath"], stdout=subprocess.PIPE, text=True, check=True).stdout
+        subprocess.run(["g++", "-std=c++20", "-march=native", "-fsyntax-only", "-Wall", "-Wextra", "-Werror", "-I", ROOT,
+                        *flags.split(), "all.cpp"], cwd=self.folder, check=True, timeout=300)
 
 
 if __name__ == "__main__":
