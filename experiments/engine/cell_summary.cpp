@@ -237,11 +237,13 @@ private:
             all[features.names[f]] = {{"share", found[f].share},
                                       {"share_ci95", interval(found[f].ci95)},
                                       {"truth", found[f].truth ? Json(*found[f].truth) : Json()},
-                                      {"p_adjusted", found[f].truth ? Json(found[f].pAdjusted) : Json()},
+                                      {"judged", found[f].judged},
+                                      {"p_adjusted", found[f].judged ? Json(found[f].pAdjusted) : Json()},
                                       {"relative_sd", number(statistics::coefficientOfVariation(column))},
                                       {"jumps_per_million", mutations > 0 ? Json(1e6 * jumps / mutations) : Json()},
                                       {"per_replicate", column}};
-            if (found[f].truth && found[f].pAdjusted < statistics::kFamilyLevel) ++wrongFeatures_;
+            if (found[f].truth && !found[f].judged) ++unjudgedFeatures_;
+            if (found[f].judged && found[f].pAdjusted < statistics::kFamilyLevel) ++wrongFeatures_;
         }
         summary_.json["features"] = std::move(all);
         summary_.json["feature_grid"] = {features.rows, features.columns};
@@ -269,6 +271,10 @@ private:
         if (flatter_)
             warnings_.push_back(fmt::format("the error falls slower than 1 / time: {}, or the image is biased",
                                             hasChains() ? "chains are trapped" : "it comes from rare bright samples"));
+        if (unjudgedFeatures_ > 0)
+            warnings_.push_back(fmt::format(
+                "the brightness of {} of {} features scatters too much between runs to be tested with {} replicates",
+                unjudgedFeatures_, cell_.task.scene->scene.features.names.size(), replicates_.size()));
         if (wrongFeatures_ > 0)
             warnings_.push_back(
                 fmt::format("the brightness of {} of {} features is wrong (t over replicates, Holm, 5 %)",
@@ -296,7 +302,7 @@ private:
     CellSummary summary_;
     std::vector<std::string> warnings_;
     bool flatter_ = false;
-    int wrongFeatures_ = 0;
+    int wrongFeatures_ = 0, unjudgedFeatures_ = 0;
 };
 
 }  // namespace

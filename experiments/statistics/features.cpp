@@ -10,9 +10,28 @@
 namespace ulam::statistics {
 namespace {
 
-double neverVisitedP(const MeanEstimate& truth, std::size_t replicates) {
+/// Relative spread from which on skewness spoils Student's t.
+constexpr double kSkewedSpread = 0.3;
+
+std::optional<double> neverVisitedP(const MeanEstimate& truth, std::size_t replicates) {
     const double w = std::clamp(truth.mean - 2 * std::sqrt(truth.varianceOfMean), 0.0, 1.0);
     return std::min(1.0, 2 * std::pow(1 - w, static_cast<double>(replicates)));
+}
+
+/// Where the squared relative spread allows a test: the larger p of Welch's and Johnson's.
+std::optional<double> visitedP(std::span<const double> column, const MeanEstimate& truth) {
+    const double n = static_cast<double>(column.size());
+    const MeanEstimate found = estimateMean(column);
+    const double variance = found.varianceOfMean * n;
+    if (n < kReplicatesPerSquaredSpread * variance / (found.mean * found.mean)) return std::nullopt;
+    const double welch = welchTest(found, truth).p;
+    if (!(variance > kSkewedSpread * kSkewedSpread * found.mean * found.mean) || n < 3) return welch;
+    double cubes = 0;
+    for (const double x : column) cubes += std::pow(x - found.mean, 3);
+    const double third = cubes * n / ((n - 1) * (n - 2)), difference = found.mean - truth.mean;
+    MeanEstimate corrected = found;
+    corrected.mean += third / (6 * variance * n) + third / (3 * variance * variance) * difference * difference;
+    return std::max(welch, welchTest(corrected, truth).p);
 }
 
 void requireFeatures(std::size_t expected, std::size_t found) {
@@ -43,8 +62,9 @@ std::vector<FeatureShare> featureShares(std::span<const std::vector<double>> sha
         if (truth.empty()) continue;
         feature.truth = truth[f].mean;
         if (column.size() < 2) continue;
-        p[f] =
-            feature.share == 0 ? neverVisitedP(truth[f], column.size()) : welchTest(estimateMean(column), truth[f]).p;
+        const auto tested = feature.share == 0 ? neverVisitedP(truth[f], column.size()) : visitedP(column, truth[f]);
+        feature.judged = tested.has_value();
+        p[f] = tested.value_or(1);
     }
     const std::vector<double> adjusted = holmAdjusted(p);
     for (std::size_t f = 0; f < features; ++f) {

@@ -15,12 +15,21 @@ struct FeatureShare {
     double share = 0;              // mean over replicates
     std::optional<Interval> ci95;  // Student's t over replicates, cut to [0, 1]; nothing below two
     std::optional<double> truth;
-    double p = 1;          // share equals truth; 1 without truth or below two replicates
+    double p = 1;          // share equals truth; 1 without truth or where it cannot be judged
     double pAdjusted = 1;  // Holm over the features
+    bool judged = false;   // enough replicates for how much the share scatters
 };
+
+/// By simulation with gamma-distributed shares: 64 features of a correct sampler raise an alarm in at most 7 % of
+/// experiments from this many replicates on.
+inline constexpr double kReplicatesPerSquaredSpread = 64;
 
 /// shares[replicate][feature]. `truth` is empty or has one entry per feature: exact (MeanEstimate{share}) or a
 /// reference with its own variance. Throws where the lengths differ.
+///
+/// Shares of chains that get caught are skewed: most runs hardly visit a hole, a few stay there, and Student's t finds the
+/// former too dark far too often. So where s/mean exceeds 0.3, p is the larger one of Welch's test and the same with
+/// Johnson's (1978) correction of the mean for skewness, and below kReplicatesPerSquaredSpread · (s/mean)² replicates nothing is judged.
 ///
 /// A feature that no replicate visited has no variance for a t-test. Its p is min(1, 2 (1 − w)^R) for truth w and R
 /// replicates: a variable in [0, 1] with mean w vanishes with probability at most 1 − w, and the two pays for having

@@ -107,7 +107,8 @@ function occupancyCard(cell, scales) {
         );
     };
     const facts = [
-        isNumber(cell.wrongHoles) && `${cell.wrongHoles} of ${grid.holes.length} significantly wrong`,
+        isNumber(cell.wrongHoles) && `${cell.wrongHoles} of ${cell.judgedHoles} significantly wrong`,
+        cell.unjudgedHoles > 0 && `${cell.unjudgedHoles} scatter too much to be tested`,
         isNumber(cell.holeError) && `${percent(cell.holeError)} RMS in one run`,
     ].filter(Boolean);
     return el(
@@ -154,7 +155,7 @@ function featureTable(group) {
                     el("td", { class: "text" }, name),
                     el("td", {}, percent(f.share), el("span", { class: "ci" }, interval(f.share_ci95, percent))),
                     el("td", {}, percent(f.truth)),
-                    el("td", { class: f.p_adjusted <= 0.05 ? "alarming" : null }, pValue(f.p_adjusted)),
+                    el("td", { class: isNumber(f.p_adjusted) && f.p_adjusted <= 0.05 ? "alarming" : null }, pValue(f.p_adjusted)),
                     el("td", {}, percent(f.relative_sd)),
                     el("td", {}, number(f.jumps_per_million)),
                 ),

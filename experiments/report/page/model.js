@@ -53,7 +53,9 @@ function replicateHoleErrors(grid) {
 for (const cell of cells) {
     cell.grid = holeGrid(cell);
     if (!cell.grid) continue;
-    cell.wrongHoles = cell.grid.holes.some((hole) => isNumber(hole.p_adjusted))
+    cell.unjudgedHoles = cell.grid.holes.filter((hole) => isNumber(hole.truth) && !isNumber(hole.p_adjusted)).length;
+    cell.judgedHoles = cell.grid.holes.filter((hole) => isNumber(hole.p_adjusted)).length;
+    cell.wrongHoles = cell.judgedHoles > 0
         ? cell.grid.holes.filter((hole) => hole.wrong).length
         : null;
     cell.holeErrors = replicateHoleErrors(cell.grid);

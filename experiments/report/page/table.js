@@ -96,7 +96,7 @@ function cellColumns() {
             title: "holes wrong",
             meaning: "holes whose share differs from the truth (t test over runs, Holm, p ≤ 0.05)",
             value: (c) => c.wrongHoles,
-            show: (c) => (isNumber(c.wrongHoles) ? `${c.wrongHoles} / ${c.grid.holes.length}` : kDash),
+            show: (c) => (isNumber(c.wrongHoles) ? `${c.wrongHoles} / ${c.judgedHoles}` : kDash),
             alarm: (c) => c.wrongHoles > 0,
         },
         {

@@ -16,14 +16,13 @@ function sentenceWithMarkedVerdict(comparison) {
 /// What an image metric hides: whether the brightness of the holes is right.
 function holeSentence(cell, baseline) {
     if (!cell?.grid) return null;
-    const total = cell.grid.holes.length;
     const error =
         isNumber(cell.holeError) &&
         `one run gets a hole’s brightness wrong by ${percent(cell.holeError)} (RMS` +
             `${isNumber(baseline?.holeError) ? `; ${baseline.label} ${percent(baseline.holeError)}` : ""})`;
     const wrong =
         isNumber(cell.wrongHoles) &&
-        `over all runs ${cell.wrongHoles} of ${total} are significantly wrong` +
+        `over all runs ${cell.wrongHoles} of ${cell.judgedHoles} are significantly wrong` +
             `${isNumber(baseline?.wrongHoles) ? ` (${baseline.label} ${baseline.wrongHoles})` : ""}`;
     const parts = [error, wrong].filter(Boolean);
     if (!parts.length) return null;

@@ -139,8 +139,8 @@ TEST_CASE("snapshots from before the first mutation are no part of the convergen
     Json experiment = tinyExperiment();
     experiment["samplers"] = {{"chains", {{"type", "pssmlt"}}}};
     experiment["baseline"] = "";
-    experiment["budget"] = {{"time", 0.05}};
-    experiment["snapshots"] = 20;  // the first is due after 50 nanoseconds
+    experiment["budget"] = {{"time", 0.5}};
+    experiment["snapshots"] = 20;  // the first is due after half a microsecond
     const Json summary = summaryOf(folder, experiment);
     const Json& convergence = summary["cells"][0]["convergence"];
     CHECK(convergence.size() < 21);

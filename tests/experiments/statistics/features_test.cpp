@@ -59,6 +59,24 @@ TEST_CASE("64 right shares raise a false alarm in 5 % of experiments") {
     CHECK(falseAlarms >= 0.02);
 }
 
+TEST_CASE("few trapped chains scatter: false alarms stay rare, and what cannot be judged is not") {
+    const std::vector<MeanEstimate> truth(64, MeanEstimate{1.0 / 64});
+    int judged = 0;
+    const auto falseAlarms = [&](std::size_t replicates, int chains, std::uint64_t seed) {
+        judged = 0;
+        return frequency(1000, seed, [&](PhiloxStream& random) {
+            const auto features = featureShares(trappedChains(replicates, 64, chains, 1, random), truth);
+            for (const FeatureShare& f : features) judged += f.judged;
+            return smallestAdjusted(features) <= 0.05;
+        });
+    };
+    CHECK(falseAlarms(8, 60, 94) <= 0.065);  // the relative spread of a hole's share is about 1
+    CHECK(judged < 64 * 1000 / 10);
+    CHECK(falseAlarms(16, 250, 95) <= 0.065);  // about 1/2
+    CHECK(falseAlarms(64, 60, 96) <= 0.065);
+    CHECK(judged > 64 * 1000 / 3);
+}
+
 TEST_CASE("a hole of twice its share is found among 64") {
     const std::vector<MeanEstimate> truth(64, MeanEstimate{1.0 / 64});
     const double found = frequency(300, 92, [&](PhiloxStream& random) {
