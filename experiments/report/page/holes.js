@@ -107,7 +107,7 @@ function occupancyCard(cell, scales) {
         );
     };
     const facts = [
-        isNumber(cell.wrongHoles) && `${cell.wrongHoles} of ${cell.judgedHoles} significantly wrong`,
+        isNumber(cell.wrongHoles) && `${cell.wrongHoles} of ${cell.judgedHoles}${cell.unjudgedHoles ? " tested" : ""} significantly wrong`,
         cell.unjudgedHoles > 0 && `${cell.unjudgedHoles} scatter too much to be tested`,
         isNumber(cell.holeError) && `${percent(cell.holeError)} RMS in one run`,
     ].filter(Boolean);

@@ -22,7 +22,7 @@ function holeSentence(cell, baseline) {
             `${isNumber(baseline?.holeError) ? `; ${baseline.label} ${percent(baseline.holeError)}` : ""})`;
     const wrong =
         isNumber(cell.wrongHoles) &&
-        `over all runs ${cell.wrongHoles} of ${cell.judgedHoles} are significantly wrong` +
+        `over all runs ${cell.wrongHoles} of ${cell.judgedHoles}${cell.unjudgedHoles ? " that can be tested" : ""} are significantly wrong` +
             `${isNumber(baseline?.wrongHoles) ? ` (${baseline.label} ${baseline.wrongHoles})` : ""}`;
     const parts = [error, wrong].filter(Boolean);
     if (!parts.length) return null;
