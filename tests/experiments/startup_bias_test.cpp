@@ -39,9 +39,9 @@ void checkShortRuns(const Json& sampler, double mutations, int runs, double shar
 }  // namespace
 
 TEST_CASE("one turn of one chain of many is unbiased") {
-    checkShortRuns({{"type", "mlt"}, {"chains", 50}, {"bootstrap", 200}}, 64, 6000, 0.03);
+    checkShortRuns({{"type", "mlt"}, {"chains", 100}, {"bootstrap", 10}}, 2, 16'000, 0.02);
 }
 
 TEST_CASE("Kelemen's deposits are unbiased with a poor bootstrap") {
-    checkShortRuns({{"type", "pssmlt"}, {"chains", 2}, {"bootstrap", 10}}, 128, 20'000, 0.015);
+    checkShortRuns({{"type", "pssmlt"}, {"chains", 1}, {"bootstrap", 4}}, 64, 30'000, 0.02);
 }
