@@ -111,7 +111,7 @@ private:
         /// Can the edge after vertex i be the joining one?
         static bool joinable(const Path& path, int i) { return i < 0 ? hittable(path[0]) : connectable(path[i], path[i + 1]); }
         bool smooth(const Vertex& v) const {
-            return !v.onSurface() || context.scene().materialAt(v).hasSmooth();
+            return !v.onSurface() || context.scene().materialAt(v).hasSmooth;
         }
 
         int l;
@@ -128,7 +128,7 @@ private:
     /// the subpaths of x with as many edges. Subpaths at either end, whose C is of another magnitude, have p_d2 = 1.
     class Deletions {
     public:
-        Deletions(const Scene& scene, const Sample& x) : k_(x.path.length()), largestM_(Perspective::positionIsDelta ? k_ : k_ + 1) {
+        Deletions(const Scene& scene, const Sample& x) : k_(x.path.length()), largestM_(scene.sensor->positionIsDelta() ? k_ : k_ + 1) {
             const Path& path = x.path;
             const PathFactors& f = x.factors;
             std::array<double, kMaxVertices> value;

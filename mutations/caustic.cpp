@@ -28,9 +28,14 @@ public:
     Proposal propose(const Sample& x, StepContext& context) const override {
         Proposal p;
         const int k = x.path.length(), s = start(x.path);
-        PathEdit edit(x, s, k, k - s, context, p.y);
+        const Perspective& sensor = *context.scene().sensor;
+        const Block u = context.random.nextBlock();
+        Vertex lens = x.path.camera();
+        if (!sensor.positionIsDelta() && !AperturePerturbation::sample(sensor, x.path.camera(), u, lens)) return p.reject = Reject::OffScreen, p;
+        PathEdit edit(x, s, k + 1, k + 1 - s, context, p.y);
+        edit.takeFromCamera(lens);
         p.y.path[s].lobe = Lobe::Smooth;
-        p.reject = edit.growFromLightAlong(direction_.sample(x.factors.edge[s].direction, context.random.nextBlock()));
+        p.reject = edit.growFromLightAlong(direction_.sample(x.factors.edge[s].direction, u));
         for (int i = s + 1; i < k - 1 && p.reject == Reject::None; ++i) p.reject = edit.followFromLight(x.path[i].lobe);
         if (p.reject != Reject::None || (p.reject = edit.join()) != Reject::None) return p;
         p.logForward = *logDensity(x, p.y, context);
@@ -41,7 +46,8 @@ public:
     std::optional<double> logDensity(const Sample& from, const Sample& to, StepContext& context) const override {
         const int k = to.path.length(), s = start(to.path);
         const PathFactors& f = to.factors;
-        double sum = std::log(f.edge[s].toAreaB(direction_.pdf(from.factors.edge[s].direction, f.edge[s].direction)));
+        double sum = std::log(f.edge[s].toAreaB(direction_.pdf(from.factors.edge[s].direction, f.edge[s].direction)) *
+                              AperturePerturbation::pdf(*context.scene().sensor, from.path.camera(), to.path.camera()));
         for (int i = s + 2; i < k; ++i) sum += logFollowedFromLight(context.scene(), to.path, f, i);
         return sum;
     }
@@ -54,7 +60,7 @@ private:
         int s = end - 1;
         while (s > 0 && isDelta(x[s].lobe)) --s;
         // A direction at infinity has no direction to change.
-        return end - 1 - s >= fewestSpecular_ && x[s].kind != Vertex::Kind::Infinite ? s : -1;
+        return end - 1 - s >= fewestSpecular_ && !x[s].atInfinity() ? s : -1;
     }
 
     AnglePerturbation direction_;

@@ -1,5 +1,6 @@
 // lens_subpath: replaces everything from the camera to the first vertex that is not specular by a new walk from a
-// uniform raster position (Veach 1997, §11.4.4). The raster position is drawn independently for each proposal: taking
+// uniform raster position (Veach 1997, §11.4.4). Where a surface has both kinds of lobes, the walk stops as often as it
+// would choose the smooth one. The raster position is drawn independently for each proposal: taking
 // them in stratified order would make the next proposal known, which detailed balance does not allow.
 
 #include "core/mcmc/perturbation.h"
@@ -35,12 +36,16 @@ public:
         walkFromCamera(context.tracing, endless, 2, raster, numbers, walk);
         if (walk.size < 2) return p.reject = Reject::Missed, p;
         const int most = context.limits.maxDepth + 1 - m;
-        while (walk.size < most && isSpecular(scene, walk))
-            if (!extendWalk(context.tracing, endless, From::Camera, numbers(NumberStream::Camera, walk.size - 1), walk)) return p.reject = Reject::Missed, p;
-        if (walk.size > most || isSpecular(scene, walk)) return p.reject = Reject::ZeroTarget, p;
+        for (;;) {
+            const Block& u = numbers(NumberStream::Camera, walk.size - 1);
+            if (u[2] >= 1 - stopping(scene, walk.vertex[size_t(walk.size - 1)], walk.vertex[size_t(walk.size - 2)])) break;
+            if (walk.size >= most) return p.reject = Reject::ZeroTarget, p;
+            if (!extendWalk(context.tracing, endless, From::Camera, u, walk)) return p.reject = Reject::Missed, p;
+        }
+        if (walk.size > most) return p.reject = Reject::ZeroTarget, p;
 
-        PathEdit edit(x, m - 1, k, walk.size, context, p.y);
-        for (int i = 1; i < walk.size; ++i) edit.takeFromCamera(walk.vertex[size_t(i)]);
+        PathEdit edit(x, m - 1, k + 1, walk.size + 1, context, p.y);
+        for (int i = 0; i < walk.size; ++i) edit.takeFromCamera(walk.vertex[size_t(i)]);
         if ((p.reject = edit.join()) != Reject::None) return p;
         p.logForward = *logDensity(x, p.y, context);
         p.logReverse = *logDensity(p.y, x, context);
@@ -48,22 +53,17 @@ public:
     }
 
     std::optional<double> logDensity(const Sample&, const Sample& to, StepContext& context) const override {
-        // A walk does not stop at a mirror that shines.
-        const Vertex& x0 = to.path.light();
-        if (firstSmoothFromCamera(to.path) == 0 && x0.onSurface() && !context.scene().materialAt(x0).hasSmooth())
-            return -std::numeric_limits<double>::infinity();
-        double sum = 0;
-        for (int i = to.path.length() - 1; i >= firstSmoothFromCamera(to.path); --i) sum += std::log(to.factors.fromCamera(i));
+        const Path& path = to.path;
+        const int k = path.length(), m = firstSmoothFromCamera(path);
+        double sum = std::log(context.scene().sensor->positionPdf(path.camera()) * stopping(context.scene(), path[m], path[m + 1]));
+        for (int i = k - 1; i >= m; --i) sum += std::log(to.factors.fromCamera(i));
         return sum;
     }
 
 private:
-    /// Does the walk's last vertex scatter by delta lobes only, on the side where the walk arrived?
-    static bool isSpecular(const Scene& scene, const Subpath& walk) {
-        const Vertex& v = walk.vertex[size_t(walk.size - 1)];
-        if (!v.onSurface()) return false;
-        const float cosTheta = dot(v.shadingNormal, directionTo(v, walk.vertex[size_t(walk.size - 2)]));
-        return scene.materialAt(v).onSideOf(cosTheta, [](const auto& bsdf, bool) { return !bsdf.hasSmooth; });
+    /// Probability that the walk stops at v, where it arrived from `previous`; 0 at mirrors, also where they shine.
+    static double stopping(const Scene& scene, const Vertex& v, const Vertex& previous) {
+        return v.onSurface() ? smoothShare(scene, v, directionTo(v, previous)) : 1;
     }
 };
 

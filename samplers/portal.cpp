@@ -88,7 +88,7 @@ public:
     std::unique_ptr<SamplerRun> start(const RunContext& context) const override {
         const Scene& scene = context.scene;
         if (scene.features.empty()) fail(ExitCode::InvalidConfig, "the sampler portal needs a scene with features, such as the generator grid_of_holes");
-        const Openings openings(scene.features, scene.sensor->samplePosition({}).position, parameters_.opening, parameters_.reach,
+        const Openings openings(scene.features, scene.sensor->position(), parameters_.opening, parameters_.reach,
                                 parameters_.share);
         auto run = std::make_unique<IndependentRun>(context, [&] {
             return std::make_unique<PathSource<Openings>>(scene, parameters_.limits, Heuristic::Balance, openings);

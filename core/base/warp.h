@@ -19,6 +19,16 @@ struct Frame {
         s = {1 + sign * n.x * n.x * a, sign * b, -sign * n.x};
         t = {b, sign + n.y * n.y * a, -n.y};
     }
+    /// With s along a given tangent, which need be neither unit nor orthogonal.
+    Frame(const Vec3f& normal, const Vec3f& tangent) : n(normal) {
+        const Vec3f across = tangent - normal * dot(normal, tangent);
+        if (!(length2(across) > 1e-12f * length2(tangent))) {
+            *this = Frame(normal);
+            return;
+        }
+        s = normalize(across);
+        t = cross(n, s);
+    }
     Vec3f toLocal(const Vec3f& v) const { return {dot(v, s), dot(v, t), dot(v, n)}; }
     Vec3f toWorld(const Vec3f& v) const { return s * v.x + t * v.y + n * v.z; }
 };

@@ -201,7 +201,8 @@ void ParameterList::parse(const JsonNode& object, const std::vector<std::string>
     names.insert(names.end(), alsoAllowed.begin(), alsoAllowed.end());
     object.allowOnly("parameter", names);
     for (const Parameter& parameter : parameters_)
-        if (const auto node = object.find(parameter.name))
+        if (const auto node = object.find(parameter.name);
+            node && std::find(alsoAllowed.begin(), alsoAllowed.end(), parameter.name) == alsoAllowed.end())
             std::visit(Reader{*node, infoOf(parameter)}, parameter.member);
 }
 

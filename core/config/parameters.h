@@ -75,7 +75,8 @@ public:
 
     /// Fails with InvalidConfig where a name is described twice or a default breaks its own bounds or choices.
     std::vector<ParameterInfo> info() const;
-    /// Writes the members found in `object`, the others keep their values.
+    /// Writes the members found in `object`, the others keep their values; so do those whose names are in `alsoAllowed`,
+    /// which belong to somebody else.
     void parse(const JsonNode& object, const std::vector<std::string>& alsoAllowed) const;
     Json toJson() const;
 

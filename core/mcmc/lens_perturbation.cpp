@@ -16,13 +16,16 @@ Proposal LensPerturbation::propose(const Sample& x, int m, StepContext& context)
     Proposal p;
     const Scene& scene = context.scene();
     const int k = x.path.length();
-    const Vec2f raster = raster_.sample(x.splats[0].raster, context.random.nextBlock());
-    const auto& window = scene.sensor->window();
-    if (raster.x < window.min.x || raster.x >= window.max.x || raster.y < window.min.y || raster.y >= window.max.y)
-        return p.reject = Reject::OffScreen, p;
+    const Perspective& sensor = *scene.sensor;
+    const Block u = context.random.nextBlock();
+    const Vec2f raster = raster_.sample(x.splats[0].raster, u);
+    if (!sensor.contains(raster)) return p.reject = Reject::OffScreen, p;
+    Vertex lens = x.path.camera();
+    if (!sensor.positionIsDelta() && !AperturePerturbation::sample(sensor, x.path.camera(), u, lens)) return p.reject = Reject::OffScreen, p;
 
-    PathEdit edit(x, m - 1, k, k - m + 1, context, p.y);
-    if ((p.reject = edit.growFromCameraAlong(scene.sensor->direction(raster))) != Reject::None) return p;
+    PathEdit edit(x, m - 1, k + 1, k - m + 2, context, p.y);
+    edit.takeFromCamera(lens);
+    if ((p.reject = edit.growFromCameraAlong(sensor.direction(lens, raster))) != Reject::None) return p;
     for (int i = k - 1; i > m; --i) {
         if (isDelta(x.path[i].lobe)) {
             p.reject = edit.followFromCamera(x.path[i].lobe);
@@ -41,11 +44,13 @@ Proposal LensPerturbation::propose(const Sample& x, int m, StepContext& context)
 
 double LensPerturbation::logDensity(const Scene& scene, const Sample& from, const Sample& to, int m) const {
     const int k = to.path.length();
-    const auto rasterOf = [&](const Sample& s) { return scene.sensor->raster(-s.factors.edge[k - 1].direction); };
-    const auto a = rasterOf(from), b = rasterOf(to);
-    if (!a || !b) return -std::numeric_limits<double>::infinity();
+    const Perspective& sensor = *scene.sensor;
+    const auto respond = [&](const Sample& s) { return sensor.respond(s.path.camera(), -s.factors.edge[k - 1].direction); };
+    const Perspective::Response a = respond(from), b = respond(to);
+    if (!(a.pdf > 0 && b.pdf > 0)) return -std::numeric_limits<double>::infinity();
     // fromCamera(k−1) is the density of a uniform raster position, 1 / window area per pixel².
-    double sum = std::log(raster_.pdf(*a, *b) * scene.sensor->windowArea() * to.factors.fromCamera(k - 1));
+    double sum = std::log(raster_.pdf(a.raster, b.raster) * sensor.windowArea() * to.factors.fromCamera(k - 1) *
+                          AperturePerturbation::pdf(sensor, from.path.camera(), to.path.camera()));
     for (int i = k - 2; i >= m; --i) {
         if (isDelta(to.path[i + 1].lobe)) {
             sum += logFollowedFromCamera(scene, to.path, to.factors, i);

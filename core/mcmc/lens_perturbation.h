@@ -5,7 +5,7 @@
 
 namespace ulam {
 
-/// Moves the raster position and follows the path towards the light: through delta vertices by the same lobes, and off
+/// Moves the raster position and the point on the lens and follows the path towards the light: through delta vertices by the same lobes, and off
 /// other vertices, where the path goes on to a delta vertex, along a slightly changed direction. It stops at x_m, which
 /// is joined to the unchanged x_{m−1}.
 class LensPerturbation {

@@ -32,7 +32,7 @@ Reject PathEdit::growFromLight(const Block& numbers, bool direct) {
         if (e == kNone) return Reject::ZeroTarget;
         const EmittedRay ray = dispatch(scene.emitters[e], [&](const auto& emitter) { return emitter.sampleDirection(scene.emission(e), from, numbers); });
         if (!(ray.pdf > 0)) return Reject::ZeroTarget;
-        const bool hit = from.kind == Vertex::Kind::Infinite ? context_.tracing.nextFrom(ray.origin, ray.direction, path[1])
+        const bool hit = from.atInfinity() ? context_.tracing.nextFrom(ray.origin, ray.direction, path[1])
                                                              : context_.tracing.next(from, ray.direction, path[1]);
         return hit && path[1].onSurface() ? Reject::None : Reject::Missed;
     }
@@ -56,7 +56,7 @@ Reject PathEdit::growFromCamera(const Block& numbers) {
         path[k] = scene.sensor->samplePosition(numbers);
         return Reject::None;
     }
-    if (i == k - 1) return growFromCameraAlong(scene.sensor->direction(scene.sensor->sampleRaster(numbers)));
+    if (i == k - 1) return growFromCameraAlong(scene.sensor->direction(path[k], scene.sensor->sampleRaster(numbers)));
     Vertex& from = path[i + 1];
     if (!from.onSurface()) return Reject::ZeroTarget;
     ScatteredDirection s;

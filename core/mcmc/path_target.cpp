@@ -22,11 +22,11 @@ public:
         const Spectrum f = y.factors.contribution();
         const double pi = importance_(f);
         if (!(pi > 0)) return pi == 0 ? Reject::ZeroTarget : Reject::NotFinite;
-        const auto raster = scene_.sensor->raster(-y.factors.edge[y.path.length() - 1].direction);
-        if (!raster) return Reject::OffScreen;
+        const auto response = scene_.sensor->respond(y.path.camera(), -y.factors.edge[y.path.length() - 1].direction);
+        if (!(response.importance > 0)) return Reject::OffScreen;
         y.logTarget = std::log(pi);
         y.splats.clear();
-        y.splats.add({*raster, f / pi, scene_.features.empty() ? kNone : featureOf(scene_.features, y.path)});
+        y.splats.add({response.raster, f / pi, scene_.features.empty() ? kNone : featureOf(scene_.features, y.path)});
         return Reject::None;
     }
 

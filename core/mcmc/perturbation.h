@@ -36,6 +36,27 @@ struct RasterPerturbation {
     }
 };
 
+/// Steps of the point on a thin lens. A pinhole stays where it is.
+struct AperturePerturbation {
+    /// In units of the aperture's radius.
+    static constexpr ExponentialStep kStep{0.01, 1, 2e-6};
+
+    /// False where the step leaves the lens.
+    static bool sample(const Perspective& sensor, const Vertex& from, const Block& u, Vertex& to) {
+        const Vec2f p = sensor.onDisc(from);
+        const double r = kStep.sample(u[2]), phi = 2 * kPi * u[3];
+        const Vec2f q(float(p.x + r * std::cos(phi)), float(p.y + r * std::sin(phi)));
+        to = sensor.lensPoint(q);
+        return q.length2() < 1;
+    }
+    /// Per area of the lens; 1 for a pinhole.
+    static double pdf(const Perspective& sensor, const Vertex& from, const Vertex& to) {
+        if (sensor.positionIsDelta()) return 1;
+        const double r = double(length(to.position - from.position)) / sensor.apertureRadius();
+        return kStep.pdf(r) / (2 * kPi * r * sensor.apertureRadius() * sensor.apertureRadius());
+    }
+};
+
 /// Steps of a direction.
 struct AnglePerturbation {
     AnglePerturbation() = default;

@@ -3,12 +3,13 @@
 namespace ulam {
 
 std::optional<std::string> missedLight(const Scene& scene, const TechniqueSet& set) {
-    const bool specular = std::any_of(scene.materials.begin(), scene.materials.end(), [](const Material& m) { return m.hasDelta(); });
-    const bool points = std::any_of(scene.emitters.begin(), scene.emitters.end(), [](const Emitter& e) {
+    const bool specular = std::any_of(scene.materials.begin(), scene.materials.end(), [](const Material& m) { return m.hasDelta; });
+    const bool deltaLight = std::any_of(scene.emitters.begin(), scene.emitters.end(), [](const Emitter& e) {
         return dispatch(e, [](const auto& emitter) { return emitter.positionIsDelta; });
     });
     if (!set.hitLight && specular) return "walks from the light cannot join mirrors and glass to the lens: what the camera sees directly in them is black";
-    if (!set.connect && !set.lightImage && specular && points) return "walks from the camera cannot join mirrors and glass to a point light: its caustics are missing";
+    if (!set.connect && !set.lightImage && specular && deltaLight)
+        return "walks from the camera cannot join mirrors and glass to a point, spot or directional light: its caustics are missing";
     return {};
 }
 
@@ -30,7 +31,7 @@ constexpr float kFar = 1e6f;  // along a ray to infinity: beyond every feature
 uint32_t featureOf(const Features& features, const Path& path) {
     for (int i = path.length(); i > 0; --i) {
         const Vertex &a = path[i - 1], &b = path[i];
-        const bool endless = a.kind == Vertex::Kind::Infinite;
+        const bool endless = a.atInfinity();
         const uint32_t label = features.crossed(b.position, endless ? b.position + a.position * kFar : a.position);
         if (label != kNone) return label;
     }

@@ -73,7 +73,7 @@ public:
 
 private:
     /// Does the material at v scatter other than by delta lobes?
-    bool isSmooth(const Vertex& v) const { return tracing_.scene().materialAt(v).hasSmooth(); }
+    bool isSmooth(const Vertex& v) const { return tracing_.scene().materialAt(v).hasSmooth; }
 
     BidirectionalOptions options_;
     Tracing tracing_;

@@ -77,11 +77,10 @@ bool connect(Tracing& tracing, const PathLimits& limits, const Subpath& light, i
     }
     if (isBlack(atY.f)) return false;
     if (t == 1) {
-        const auto raster = scene.sensor->raster(-edge.direction);
-        if (!raster) return false;
-        out.raster = *raster;
-        atZ.f = Spectrum(scene.sensor->importance(-edge.direction));
-        atZ.pdfToLight = scene.sensor->directionPdf(-edge.direction);
+        const Perspective::Response response = scene.sensor->respond(z, -edge.direction);
+        out.raster = response.raster;
+        atZ.f = Spectrum(response.importance);
+        atZ.pdfToLight = response.pdf;
     } else {
         afterZ = camera.back[t - 1];
         atZ = scatter(scene, z, Lobe::Smooth, -edge.direction, afterZ.direction);

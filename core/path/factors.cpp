@@ -25,8 +25,8 @@ bool evaluate(const Scene& scene, const Path& path, int first, int last, PathFac
             const Emission e = emission(scene, path[0], factors.edge[0].direction);
             at = {e.radiance, e.pdf, 0};
         } else if (i == k) {
-            const Vec3f w = -factors.edge[k - 1].direction;
-            at = {Spectrum(scene.sensor->importance(w)), 0, scene.sensor->directionPdf(w)};
+            const Perspective::Response response = scene.sensor->respond(path[k], -factors.edge[k - 1].direction);
+            at = {Spectrum(response.importance), 0, response.pdf};
         } else {
             if (!path[i].onSurface()) return false;
             at = scatter(scene, path[i], path[i].lobe, -factors.edge[i - 1].direction, factors.edge[i].direction);

@@ -5,8 +5,8 @@
 
 namespace ulam {
 
-/// |cosθ| between a direction and the surface at v; 1 where there is no surface.
-inline double cosine(const Vertex& v, const Vec3f& w) { return v.onSurface() ? std::abs(double(dot(v.normal, w))) : 1; }
+/// |cosθ| between a direction and the surface (or lens) at v; 1 where there is none.
+inline double cosine(const Vertex& v, const Vec3f& w) { return v.hasNormal() ? std::abs(double(dot(v.normal, w))) : 1; }
 
 /// An edge a–b: direction from a to b, and what the measures need.
 struct Edge {
@@ -16,7 +16,7 @@ struct Edge {
 
     Edge() {}  // left open: arrays of edges are made often
     Edge(const Vertex& a, const Vertex& b) {
-        if (a.kind == Vertex::Kind::Infinite || b.kind == Vertex::Kind::Infinite) {
+        if (a.atInfinity() || b.atInfinity()) {
             direction = directionTo(a, b);
             inverseD2 = 1;
         } else {

@@ -41,10 +41,10 @@ private:
 /// May x_i and x_{i+1} be joined by a connection? The one place where this is decided.
 inline bool connectable(const Vertex& a, const Vertex& b) { return !isDelta(a.lobe) && !isDelta(b.lobe); }
 
-/// Can a walk from the other end arrive at this end of a path?
-inline bool hittable(const Vertex& end) { return end.kind != Vertex::Kind::Point; }
+/// Can a walk from the other end arrive at this end of a path? A delta light has no extent, and lenses are not in the scene.
+inline bool hittable(const Vertex& end) { return end.kind == Vertex::Kind::Surface || end.kind == Vertex::Kind::Infinite; }
 
-/// Can a camera see this light itself? A point light has no extent, so no pixel shows it.
+/// Can a camera see this light itself? A delta light has no extent, so no pixel shows it.
 inline bool showsItself(const Vertex& light) { return hittable(light); }
 
 /// The last feature crossed before the camera, or kNone.

@@ -51,10 +51,11 @@ public:
     bool cameraWalk(int t) {
         const int k = path_.length();
         Block block = random_.nextBlock();
+        scene_.sensor->invertPosition(path_[k], block);
         if (t >= 2) {
-            const auto raster = scene_.sensor->raster(directionTo(path_[k], path_[k - 1]));
-            if (!raster) return false;
-            scene_.sensor->invertRaster(*raster, block);
+            const auto response = scene_.sensor->respond(path_[k], directionTo(path_[k], path_[k - 1]));
+            if (!(response.pdf > 0)) return false;
+            scene_.sensor->invertRaster(response.raster, block);
         }
         u_.append(NumberStream::Camera, block);
         for (int j = 1; j + 1 < t; ++j)

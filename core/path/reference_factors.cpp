@@ -1,5 +1,7 @@
 #include "core/path/reference_factors.h"
 
+#include "core/path/local_bsdf.h"
+
 #include <complex>
 #include <limits>
 
@@ -65,6 +67,18 @@ Factors factorsOf(const Dielectric& bsdf, Lobe lobe, double cosLight, double cos
     return {tint.x * f, tint.y * f, tint.z * f, chosen * b * nCamera * nCamera, chosen * a * nLight * nLight};
 }
 
+template <class B>
+Factors factorsOf(const Masked<B>& bsdf, Lobe lobe, double cosLight, double cosCamera) {
+    Factors out = factorsOf(bsdf.nested, lobe, cosLight, cosCamera);
+    for (double& x : out) x *= bsdf.opacity;
+    if (lobe != Lobe::Null || (cosLight > 0) == (cosCamera > 0)) return out;
+    const double passed = 1 - bsdf.opacity;
+    for (size_t c = 0; c < 3; ++c) out[c] += passed;
+    out[3] += passed * std::abs(cosCamera);
+    out[4] += passed * std::abs(cosLight);
+    return out;
+}
+
 void extend(FactorRanges& ranges, const Factors& factors) {
     for (size_t i = 0; i < 5; ++i) {
         ranges[i].low = std::min(ranges[i].low, factors[i]);
@@ -84,11 +98,13 @@ FactorRanges exactly(const Spectrum& f, double toCamera, double toLight) {
     return ranges;
 }
 
-FactorRanges emissionOf(const AreaEmitter& emitter, const Scene&, const Vertex& x0, const Vec3d& w) {
+FactorRanges emissionOf(const AreaEmitter& emitter, const Scene& scene, const Vertex& x0, const Vec3d& w) {
+    const Spectrum radiance =
+        emitter.texture == kNone ? emitter.emitted : textureColor(scene.textures[emitter.texture], scene.shapes[x0.shape].texcoord(x0));
     FactorRanges ranges = emptyRanges();
     const double c = inDouble(x0.normal).dot(w);
     for (const double cosine : {c - kCosineError, c + kCosineError}) {
-        const Spectrum l = cosine > 0 ? emitter.emitted : Spectrum(0.0);
+        const Spectrum l = cosine > 0 ? radiance : Spectrum(0.0);
         extend(ranges, {l.x, l.y, l.z, std::max(0.0, cosine) / kPi, 0});
     }
     return ranges;
@@ -98,40 +114,59 @@ FactorRanges emissionOf(const PointEmitter& emitter, const Scene&, const Vertex&
     return exactly(emitter.intensity, 1 / (4 * kPi), 0);
 }
 
+FactorRanges emissionOf(const SpotEmitter& emitter, const Scene&, const Vertex&, const Vec3d& w) {
+    const double cone = 1 / (2 * kPi * (1 - std::cos(emitter.cutoff)));
+    const Vec3d axis = inDouble(emitter.frame.n);
+    const double theta = std::atan2(axis.cross(w).length(), axis.dot(w));
+    FactorRanges ranges = emptyRanges();
+    for (const double t : {theta - 2 * kCosineError, theta + 2 * kCosineError}) {
+        const double share = t >= emitter.cutoff ? 0 : t <= emitter.beam ? 1 : (emitter.cutoff - t) / (emitter.cutoff - emitter.beam);
+        const Spectrum f = emitter.intensity * share;
+        extend(ranges, {f.x, f.y, f.z, t < emitter.cutoff ? cone : 0, 0});
+    }
+    return ranges;
+}
+
+/// 1 / area of the scene's disc.
+double perDisc(const Scene& scene) { return 1 / (kPi * double(scene.bounds().radius) * scene.bounds().radius); }
+
 FactorRanges emissionOf(const ConstantEmitter& emitter, const Scene& scene, const Vertex&, const Vec3d&) {
-    const double r = scene.bounds().radius;
-    return exactly(emitter.emitted, 1 / (kPi * r * r), 0);
+    return exactly(emitter.emitted, perDisc(scene), 0);
+}
+
+FactorRanges emissionOf(const DirectionalEmitter& emitter, const Scene& scene, const Vertex&, const Vec3d&) {
+    return exactly(emitter.irradiance, perDisc(scene), 0);
+}
+
+FactorRanges emissionOf(const EnvmapEmitter& emitter, const Scene& scene, const Vertex& x0, const Vec3d&) {
+    return exactly(emitter.map->radiance(x0.position), perDisc(scene), 0);
 }
 
 }  // namespace
 
 Vec3d exactDirection(const Vertex& a, const Vertex& b) {
-    if (b.kind == Vertex::Kind::Infinite) return inDouble(b.position).normalized();
-    if (a.kind == Vertex::Kind::Infinite) return -inDouble(a.position).normalized();
+    if (b.atInfinity()) return inDouble(b.position).normalized();
+    if (a.atInfinity()) return -inDouble(a.position).normalized();
     return (inDouble(b.position) - inDouble(a.position)).normalized();
 }
 
 double exactInverseD2(const Vertex& a, const Vertex& b) {
-    if (a.kind == Vertex::Kind::Infinite || b.kind == Vertex::Kind::Infinite) return 1;
+    if (a.atInfinity() || b.atInfinity()) return 1;
     return 1 / (inDouble(b.position) - inDouble(a.position)).length2();
 }
 
 double exactCosine(const Vertex& v, const Vec3d& w) {
-    return v.onSurface() ? std::abs(inDouble(v.normal).dot(w)) : 1;
+    return v.hasNormal() ? std::abs(inDouble(v.normal).dot(w)) : 1;
 }
 
 FactorRanges scatteringReference(const Scene& scene, const Vertex& v, const Vec3d& toLight, const Vec3d& toCamera) {
     const Vec3d n = inDouble(v.shadingNormal);
     const double cosLight = n.dot(toLight), cosCamera = n.dot(toCamera), geometric = exactCosine(v, toLight);
-    const Material& material = scene.materialAt(v);
     FactorRanges ranges = emptyRanges();
     for (const double l : {cosLight - kCosineError, cosLight, cosLight + kCosineError})
         for (const double c : {cosCamera - kCosineError, cosCamera, cosCamera + kCosineError}) {
-            const bool behind = material.back && !(l > 0);
-            const double side = behind ? -1 : 1;
-            Factors factors = std::visit([&](const auto& bsdf) { return factorsOf(bsdf, v.lobe, side * l, side * c); },
-                                         behind ? *material.back : material.front);
-            extend(ranges, factors);
+            const double side = scene.materialAt(v).back && !(l > 0) ? -1 : 1;
+            extend(ranges, withBsdf(scene, v, float(l), [&](const auto& bsdf, const LocalFrame&) { return factorsOf(bsdf, v.lobe, side * l, side * c); }));
         }
     // f_s |n_s·w| = f̂_s |n_g·w| with w towards the light (Veach 1997, §5.3.2). The same normals give exactly 1.
     if (v.shadingNormal == v.normal) return ranges;
@@ -146,21 +181,24 @@ FactorRanges emissionReference(const Scene& scene, const Vertex& x0, const Vec3d
                       scene.emitters[scene.emitterAt(x0)]);
 }
 
-FactorRanges importanceReference(const Scene& scene, const Vec3d& w) {
+FactorRanges importanceReference(const Scene& scene, const Vertex& lens, const Vec3d& w) {
     // The raster is an affine picture of a plane. So the directions of the window's corners, at suitable distances, are
     // the corners of a parallelogram; four vectors in space determine those distances up to a common factor.
     const auto& window = scene.sensor->window();
-    const Vec3d d[4] = {
-        inDouble(scene.sensor->direction(window.min)), inDouble(scene.sensor->direction({window.max.x, window.min.y})),
-        inDouble(scene.sensor->direction(window.max)), inDouble(scene.sensor->direction({window.min.x, window.max.y}))};
+    const auto direction = [&](float x, float y) { return inDouble(scene.sensor->direction(lens, {x, y})); };
+    const Vec3d d[4] = {direction(window.min.x, window.min.y), direction(window.max.x, window.min.y),
+                        direction(window.max.x, window.max.y), direction(window.min.x, window.max.y)};
     Vec3d corner[4];
     for (int i = 0; i < 4; ++i) corner[i] = d[i] * std::abs(d[(i + 1) % 4].dot(d[(i + 2) % 4].cross(d[(i + 3) % 4])));
     const Vec3d area = (corner[1] - corner[0]).cross(corner[3] - corner[0]);
     const Vec3d axis = area.normalized() * (area.dot(corner[0]) > 0 ? 1 : -1);
-    // A point uniform on the parallelogram, seen from the pinhole.
+    // A point uniform on the parallelogram, seen from the aperture.
     const double distance = axis.dot(corner[0]), c = axis.dot(w);
     const double density = c > 0 ? distance * distance / (area.length() * c * c * c) : 0;
-    return exactly(Spectrum(density), 0, density);
+    if (lens.kind == Vertex::Kind::Point) return exactly(Spectrum(density), 0, density);
+    // ∫ W_e |cosθ| dω dA = 1, all points of the aperture alike.
+    const double radius = scene.sensor->apertureRadius();
+    return exactly(Spectrum(density / (kPi * radius * radius * c)), 0, density);
 }
 
 double deltaLawError(const Scene& scene, const Vertex& v, const Vec3d& toLight, const Vec3d& toCamera) {
@@ -168,7 +206,8 @@ double deltaLawError(const Scene& scene, const Vertex& v, const Vec3d& toLight, 
     const double cosLight = n.dot(toLight), cosCamera = n.dot(toCamera);
     if (v.lobe == Lobe::DeltaReflection) return (n * (2 * cosLight) - toLight - toCamera).length();
     if (v.lobe == Lobe::Smooth) return 0;
-    const auto* glass = std::get_if<Dielectric>(&scene.materialAt(v).front);
+    if (v.lobe == Lobe::Null) return (toLight + toCamera).length();
+    const auto* glass = std::get_if<Dielectric>(&scene.materialAt(v).front.bsdf);
     if (!glass) return std::numeric_limits<double>::infinity();
     const double nLight = cosLight > 0 ? 1 : glass->ior, nCamera = cosCamera > 0 ? 1 : glass->ior;
     return ((toLight - n * cosLight) * nLight + (toCamera - n * cosCamera) * nCamera).length();

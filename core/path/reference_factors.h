@@ -37,8 +37,8 @@ double exactCosine(const Vertex& v, const Vec3d& w);
 FactorRanges scatteringReference(const Scene& scene, const Vertex& v, const Vec3d& toLight, const Vec3d& toCamera);
 /// L_e and the density of the direction w at x_0.
 FactorRanges emissionReference(const Scene& scene, const Vertex& x0, const Vec3d& w);
-/// W_e(w) = density of w.
-FactorRanges importanceReference(const Scene& scene, const Vec3d& w);
+/// W_e(w) and the density of w at x_k.
+FactorRanges importanceReference(const Scene& scene, const Vertex& lens, const Vec3d& w);
 
 /// How far two directions at a delta vertex are from the law of its lobe: |reflect(l) − c|, or |η_l l_t + η_c c_t| with
 /// the tangential parts and indices in units of the exterior's; 0 for other lobes.

@@ -39,7 +39,7 @@ public:
     /// V(a↔b). Asked in the order light, camera, so that the answer is a function of the pair.
     bool visible(const Vertex& a, const Vertex& b) {
         ++rays_;
-        if (a.kind == Vertex::Kind::Infinite) return !scene_->rays().occludedToInfinity(offset(b, a.position), a.position);
+        if (a.atInfinity()) return !scene_->rays().occludedToInfinity(offset(b, a.position), a.position);
         const Vec3f d = b.position - a.position;
         const Vec3f from = offset(a, d), to = offset(b, -d);
         return !scene_->rays().occluded(from, to - from);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "core/path/local_bsdf.h"
 #include "core/path/reference_factors.h"
 
 namespace ulam {
@@ -18,10 +19,12 @@ std::string text(const Vec3f& v) {
 }
 
 const char* name(Kind kind) {
-    return kind == Kind::Surface ? "on a surface" : kind == Kind::Point ? "a point without surface" : "at infinity";
+    constexpr const char* kNames[] = {"on a surface", "on the lens", "a point without surface", "at infinity", "a direction of parallel light"};
+    return kNames[int(kind)];
 }
 const char* name(Lobe lobe) {
-    return lobe == Lobe::Smooth ? "smooth" : lobe == Lobe::DeltaReflection ? "delta reflection" : "delta transmission";
+    constexpr const char* kNames[] = {"smooth", "delta reflection", "delta transmission", "null"};
+    return kNames[int(lobe)];
 }
 
 class Validator {
@@ -69,9 +72,15 @@ private:
     }
 
     Finding lens(const Vertex& v) const {
-        const Vec3f pinhole = scene_.sensor->samplePosition({}).position;
-        if (v.kind != Kind::Point || v.shape != kNone) return fmt::format("{}, expected the lens", name(v.kind));
-        if (v.position != pinhole) return fmt::format("at {}, but the lens is at {}", text(v.position), text(pinhole));
+        const Perspective& sensor = *scene_.sensor;
+        const Kind expected = sensor.positionIsDelta() ? Kind::Point : Kind::Lens;
+        if (v.kind != expected || v.shape != kNone) return fmt::format("{}, expected the camera, {}", name(v.kind), name(expected));
+        const Vec3d off = inDouble(v.position) - inDouble(sensor.position());
+        if (expected == Kind::Point && off.length() > 0)
+            return fmt::format("at {}, but the pinhole is at {}", text(v.position), text(sensor.position()));
+        if (off.length() > sensor.apertureRadius() + tracing_.offsetLength() || std::abs(off.dot(inDouble(sensor.axis()))) > tracing_.offsetLength())
+            return fmt::format("at {}, but the aperture of radius {} is around {}", text(v.position), sensor.apertureRadius(), text(sensor.position()));
+        if (expected == Kind::Lens && v.normal != sensor.axis()) return fmt::format("normal {} on the lens, expected {}", text(v.normal), text(sensor.axis()));
         return {};
     }
 
@@ -79,14 +88,19 @@ private:
         const uint32_t e = scene_.emitterAt(v);
         if (e >= scene_.emitters.size()) return fmt::format("{} that belongs to no emitter", name(v.kind));
         const Emitter& emitter = scene_.emitters[e];
-        if (const auto* point = std::get_if<PointEmitter>(&emitter)) {
-            if (v.kind == Kind::Point && v.position == point->position) return {};
-            return fmt::format("{} at {}, but its emitter is a point at {}", name(v.kind), text(v.position),
-                               text(point->position));
+        const auto* point = std::get_if<PointEmitter>(&emitter);
+        const auto* spot = std::get_if<SpotEmitter>(&emitter);
+        const auto* parallel = std::get_if<DirectionalEmitter>(&emitter);
+        if (point || spot) {
+            const Vec3f& place = point ? point->position : spot->position;
+            if (v.kind == Kind::Point && v.position == place) return {};
+            return fmt::format("{} at {}, but its emitter is a point at {}", name(v.kind), text(v.position), text(place));
         }
-        const Kind expected = std::holds_alternative<ConstantEmitter>(emitter) ? Kind::Infinite : Kind::Surface;
+        const Kind expected = parallel ? Kind::Direction : isEnvironment(emitter) ? Kind::Infinite : Kind::Surface;
         if (v.kind != expected) return fmt::format("{}, but its emitter is {}", name(v.kind), name(expected));
-        if (v.kind == Kind::Infinite && std::abs(length(v.position) - 1) > kCosineError)
+        if (parallel && v.position != -parallel->travel)
+            return fmt::format("direction {}, but its emitter's light comes from {}", text(v.position), text(-parallel->travel));
+        if (v.atInfinity() && std::abs(length(v.position) - 1) > kCosineError)
             return fmt::format("direction {} of length {}, expected 1", text(v.position), length(v.position));
         return {};
     }
@@ -99,6 +113,17 @@ private:
         if (const auto* sphere = std::get_if<Sphere>(&shape.geometry)) {
             const Vec3d center = inDouble(sphere->center), outward = (inDouble(v.position) - center).normalized();
             place = center + outward * double(sphere->radius);
+            normal = shading = shape.flipNormals ? -outward : outward;
+        } else if (const auto* disk = std::get_if<Disk>(&shape.geometry)) {
+            if (v.uv.length() > 1 + 1e-5f) return fmt::format("({}, {}) is outside the unit disc", v.uv.x, v.uv.y);
+            const Vec3d x = inDouble(disk->axisX), y = inDouble(disk->axisY), n = x.cross(y).normalized();
+            place = inDouble(disk->center) + x * double(v.uv.x) + y * double(v.uv.y);
+            normal = shading = n.dot(inDouble(disk->normal)) > 0 ? n : -n;
+        } else if (const auto* cylinder = std::get_if<Cylinder>(&shape.geometry)) {
+            const Vec3d axis = inDouble(cylinder->axes[2]), from = inDouble(v.position) - inDouble(cylinder->base);
+            const double height = std::clamp(from.dot(axis), 0.0, double(cylinder->length));
+            const Vec3d outward = (from - axis * from.dot(axis)).normalized();
+            place = inDouble(cylinder->base) + axis * height + outward * double(cylinder->radius);
             normal = shading = shape.flipNormals ? -outward : outward;
         } else {
             const Mesh& mesh = std::get<Mesh>(shape.geometry);
@@ -153,17 +178,16 @@ private:
     /// A connection's visibility test or a walk's ray from either side: which of them made the edge the path does not
     /// say, and where an edge of some object is met within rounding they differ.
     bool visible(const Vertex& a, const Vertex& b) const {
-        return tracing_.visible(a, b) || arrives(b, a) || (a.kind != Kind::Infinite && arrives(a, b));
+        return tracing_.visible(a, b) || arrives(b, a) || (!a.atInfinity() && arrives(a, b));
     }
     bool arrives(const Vertex& from, const Vertex& to) const {
         // From where a walk's ray starts, so that the ray is the walk's up to the rounding of the vertex's place.
         Vec3f w = directionTo(from, to), origin = from.position;
         if (from.onSurface()) origin += from.normal * (dot(from.normal, w) > 0 ? 1 : -1) * tracing_.offsetLength();
-        if (to.kind != Kind::Infinite) w = normalize(to.position - origin);
+        if (!to.atInfinity()) w = normalize(to.position - origin);
         Vertex hit;
-        if (!tracing_.nextFrom(origin, w, hit)) return to.kind == Kind::Point;
-        if (to.kind == Kind::Infinite || hit.kind == Kind::Infinite)
-            return hit.kind == to.kind || to.kind == Kind::Point;
+        if (!tracing_.nextFrom(origin, w, hit)) return !hittable(to);
+        if (to.atInfinity() || !hit.onSurface()) return hit.kind == to.kind || (!hittable(to) && !hit.onSurface());
         const double d = (inDouble(to.position) - inDouble(origin)).length();
         const double free = (inDouble(hit.position) - inDouble(origin)).length();
         const double grazing = std::max(1e-3, exactCosine(to, exactDirection(from, to)));
@@ -182,13 +206,14 @@ private:
             if (!(brightest(expected) > 0)) return fmt::format("no light leaves along {}", text(toCamera));
         } else if (i == k_) {
             // By the edge's own direction, which has passed: at the window's border the last bit decides.
-            const auto raster = scene_.sensor->raster(-factors_.edge[k_ - 1].direction);
-            if (!raster) return fmt::format("direction {} misses the sensor's window", text(toLight));
-            const Vec3f back = scene_.sensor->direction(*raster);
+            const auto response = scene_.sensor->respond(v, -factors_.edge[k_ - 1].direction);
+            if (!(response.importance > 0)) return fmt::format("direction {} misses the sensor's window", text(toLight));
+            const Vec2f& raster = response.raster;
+            const Vec3f back = scene_.sensor->direction(v, raster);
             if (!((inDouble(back) - toLight).length() <= 1e-5))
-                return fmt::format("direction {} has raster ({}, {}), whose direction is {}", text(toLight), raster->x,
-                                   raster->y, text(back));
-            expected = importanceReference(scene_, toLight);
+                return fmt::format("direction {} has raster ({}, {}), whose direction is {}", text(toLight), raster.x,
+                                   raster.y, text(back));
+            expected = importanceReference(scene_, v, toLight);
         } else {
             if (auto wrong = lobe(i, toLight, toCamera)) return wrong;
             expected = scatteringReference(scene_, v, toLight, toCamera);
@@ -207,9 +232,7 @@ private:
 
     Finding lobe(int i, const Vec3d& toLight, const Vec3d& toCamera) const {
         const Vertex& v = path_[i];
-        const Material& material = scene_.materialAt(v);
-        const bool behind = material.back && inDouble(v.shadingNormal).dot(toLight) < 0;
-        const auto [smooth, delta] = dispatch(behind ? *material.back : material.front, [](const auto& bsdf) {
+        const auto [smooth, delta] = withBsdf(scene_, v, float(inDouble(v.shadingNormal).dot(toLight)), [](const auto& bsdf, const LocalFrame&) {
             return std::pair(bsdf.hasSmooth, bsdf.hasDelta);
         });
         if (!(isDelta(v.lobe) ? delta : smooth))
@@ -219,9 +242,9 @@ private:
         const double inverse[2] = {exactInverseD2(v, path_[i - 1]), exactInverseD2(v, path_[i + 1])};
         double tolerance = 4e-6;
         for (int side = 0; side < 2; ++side)
-            if (path_[i - 1 + 2 * side].kind != Kind::Infinite)
+            if (!path_[i - 1 + 2 * side].atInfinity())
                 tolerance += 2 * tracing_.offsetLength() * std::sqrt(inverse[side]);
-        if (const auto* glass = std::get_if<Dielectric>(&material.front)) tolerance *= std::max(1.0, glass->ior);
+        if (const auto* glass = std::get_if<Dielectric>(&scene_.materialAt(v).front.bsdf)) tolerance *= std::max(1.0, glass->ior);
         const double error = deltaLawError(scene_, v, toLight, toCamera);
         if (error <= tolerance) return {};
         return fmt::format("{} between {} and {} misses its law by {:.3g}, more than {:.3g}", name(v.lobe),

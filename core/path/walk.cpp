@@ -58,9 +58,8 @@ void walkFromLight(Tracing& tracing, const PathLimits& limits, int vertices, Num
     if (vertices < 2) return;
     const Emission e0 = emission(scene, p.vertex[0], ray.direction);
     if (!(ray.pdf > 0) || isBlack(e0.radiance)) return;
-    const bool atInfinity = p.vertex[0].kind == Vertex::Kind::Infinite;
-    const bool hit = atInfinity ? tracing.nextFrom(ray.origin, ray.direction, p.vertex[1])
-                                : tracing.next(p.vertex[0], ray.direction, p.vertex[1]);
+    const bool hit = p.vertex[0].atInfinity() ? tracing.nextFrom(ray.origin, ray.direction, p.vertex[1])
+                                            : tracing.next(p.vertex[0], ray.direction, p.vertex[1]);
     if (!hit || !p.vertex[1].onSurface()) return;
     arrive(scene, limits, p, p.throughput[0] * e0.radiance * (cosine(p.vertex[0], ray.direction) / ray.pdf), ray.pdf);
     while (p.size < vertices && extendWalk(tracing, limits, From::Light, numbers(NumberStream::Light, p.size), p)) {}
@@ -75,10 +74,10 @@ void walkFromCamera(Tracing& tracing, const PathLimits& limits, int vertices, co
     p.backward[0] = p.albedo[0] = 0;
     p.size = 1;
     if (vertices < 2) return;
-    const Vec3f w = sensor.direction(raster);
-    const double importance = sensor.importance(w), pdf = sensor.directionPdf(w);
-    if (!(pdf > 0) || !tracing.next(p.vertex[0], w, p.vertex[1])) return;
-    arrive(scene, limits, p, p.throughput[0] * (importance * cosine(p.vertex[0], w) / pdf), pdf);
+    const Vec3f w = sensor.direction(p.vertex[0], raster);
+    const Perspective::Response response = sensor.respond(p.vertex[0], w);
+    if (!(response.pdf > 0) || !tracing.next(p.vertex[0], w, p.vertex[1])) return;
+    arrive(scene, limits, p, p.throughput[0] * (response.importance * cosine(p.vertex[0], w) / response.pdf), response.pdf);
     while (p.size < vertices && extendWalk(tracing, limits, From::Camera, numbers(NumberStream::Camera, p.size - 1), p)) {}
 }
 

@@ -29,11 +29,10 @@ public:
         Vertex vertices[2];
         Vertex *previous = &vertices[0], *v = &vertices[1];
         *previous = scene.sensor->samplePosition(numbers(NumberStream::Camera, 0));
-        Vec3f w = scene.sensor->direction(raster);
-        const double sensorPdf = scene.sensor->directionPdf(w);
-        if (!(sensorPdf > 0)) return;
-        throughput_ = Spectrum(scene.sensor->importance(w) * cosine(*previous, w) /
-                               (sensorPdf * scene.sensor->positionPdf(*previous)));
+        Vec3f w = scene.sensor->direction(*previous, raster);
+        const Perspective::Response response = scene.sensor->respond(*previous, w);
+        if (!(response.pdf > 0)) return;
+        throughput_ = Spectrum(response.importance * cosine(*previous, w) / (response.pdf * scene.sensor->positionPdf(*previous)));
         raster_ = raster;
         feature_ = kNone;
         directionPdf_ = 0;
@@ -44,7 +43,7 @@ public:
             if (depth == limits_.maxDepth || !v->onSurface()) return;
             const double q = limits_.hasRoulette() ? limits_.continuation(depth, albedoAt(scene, *v)) : 1;
             const Block& u = numbers(NumberStream::Camera, depth);
-            const bool smooth = scene.materialAt(*v).hasSmooth();
+            const bool smooth = scene.materialAt(*v).hasSmooth;
             double share = 0;
             if constexpr (Guide::present) share = smooth ? guide_.share(*v) : 0;
             if (smooth) addDirectLight(*v, back, share, q, depth, numbers(NumberStream::Connect, depth + 1), sink);

@@ -1,9 +1,10 @@
 #pragma once
-// All BSDFs, the one dispatch to them, and what covers a surface: one BSDF, or one for each side (`twosided`).
+// All BSDFs, and the one dispatch to them.
 
 #include "core/scene/bsdfs/conductor.h"
 #include "core/scene/bsdfs/dielectric.h"
 #include "core/scene/bsdfs/diffuse.h"
+#include "core/scene/bsdfs/mask.h"
 
 #include <variant>
 
@@ -18,29 +19,5 @@ decltype(auto) dispatch(const Bsdf& bsdf, Function&& function) {
     if (const auto* dielectric = std::get_if<Dielectric>(&bsdf)) return function(*dielectric);
     return function(std::get<Conductor>(bsdf));
 }
-
-/// The covering of a surface. `twosided` (Mitsuba 3) reflects on both sides: directions on the back are mirrored through
-/// the surface and meet `back`; its BSDFs must not transmit.
-struct Material {
-    Bsdf front;
-    std::optional<Bsdf> back;
-
-    /// Calls `function(bsdf, mirrored)` with the BSDF on the side of a direction with this cosine to the shading normal.
-    template <class Function>
-    decltype(auto) onSideOf(float cosTheta, Function&& function) const {
-        const bool mirrored = back && !(cosTheta > 0);
-        return dispatch(mirrored ? *back : front, [&](const auto& bsdf) { return function(bsdf, mirrored); });
-    }
-
-    /// Of either side.
-    bool hasDelta() const {
-        auto delta = [](const Bsdf& b) { return dispatch(b, [](const auto& bsdf) { return bsdf.hasDelta; }); };
-        return delta(front) || (back && delta(*back));
-    }
-    bool hasSmooth() const {
-        auto smooth = [](const Bsdf& b) { return dispatch(b, [](const auto& bsdf) { return bsdf.hasSmooth; }); };
-        return smooth(front) || (back && smooth(*back));
-    }
-};
 
 }  // namespace ulam

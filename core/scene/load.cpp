@@ -8,6 +8,7 @@
 #include "core/scene/loading/plugin_table.h"
 #include "core/scene/loading/sensors.h"
 #include "core/scene/loading/shapes.h"
+#include "core/scene/loading/textures.h"
 
 namespace ulam {
 namespace {
@@ -15,12 +16,12 @@ namespace {
 /// The plugins that may stand in a scene by themselves.
 std::vector<PluginInfo> sceneEntries() {
     std::vector<PluginInfo> all;
-    for (const PluginKind kind : {PluginKind::Shapes, PluginKind::Bsdfs, PluginKind::Emitters, PluginKind::Sensors})
+    for (const PluginKind kind : {PluginKind::Shapes, PluginKind::Bsdfs, PluginKind::Emitters, PluginKind::Sensors, PluginKind::Textures})
         for (PluginInfo& plugin : scenePlugins(kind)) all.push_back(std::move(plugin));
     return all;
 }
 
-class SceneBuilder {
+class SceneBuilder : private PluginResolver {
 public:
     SceneBuilder(const JsonNode& root, const std::filesystem::path& folder) : root_(root) { context_.folder = folder; }
 
@@ -31,16 +32,18 @@ private:
     std::vector<JsonNode> entries() const;
     void checkNames() const;
     JsonNode sensorNode() const;
-    JsonNode resolve(const JsonNode& node) const;
+    JsonNode resolve(const JsonNode& node) override;
+    uint32_t texture(const JsonNode& node, const ParameterInfo& parameter) override;
+    JsonNode named(const JsonNode& reference, PluginKind kind, const char* what) const;
     uint32_t material(const JsonNode& node);
-    uint32_t addMaterial(const Material& material);
+    uint32_t addMaterial(Material material);
     void addShape(const JsonNode& node);
     void addEmitter(const JsonNode& node);
 
     JsonNode root_;
     LoadContext context_;
     Scene scene_;
-    std::map<std::string, uint32_t> materials_;  // by JSON pointer of the plugin
+    std::map<std::string, uint32_t> materials_, textures_;  // by JSON pointer of the plugin
 };
 
 std::vector<JsonNode> SceneBuilder::entries() const {
@@ -80,8 +83,10 @@ void SceneBuilder::checkNames() const {
     }
 }
 
+JsonNode SceneBuilder::resolve(const JsonNode& node) { return named(node, PluginKind::Bsdfs, "BSDF"); }
+
 /// What a reference stands for: the scene's entry of that name.
-JsonNode SceneBuilder::resolve(const JsonNode& node) const {
+JsonNode SceneBuilder::named(const JsonNode& node, PluginKind kind, const char* what) const {
     if (pluginName(node) != "ref") return node;
     node.allowOnly("key of a reference", {"type", "id"});
     const JsonNode id = node.at("id");
@@ -89,9 +94,8 @@ JsonNode SceneBuilder::resolve(const JsonNode& node) const {
     for (const JsonNode& entry : entries()) {
         const std::string name = nameOf(entry);
         if (name == id.string()) {
-            if (!contains(scenePlugins(PluginKind::Bsdfs), pluginName(entry)))
-                id.fail(fmt::format("{} is no BSDF, but {}", inQuotes(name), inQuotes(pluginName(entry))),
-                        "only BSDFs can be referred to");
+            if (!contains(scenePlugins(kind), pluginName(entry)))
+                id.fail(fmt::format("{} is no {}, but {}", inQuotes(name), what, inQuotes(pluginName(entry))));
             return entry;
         }
         names.push_back(name);
@@ -99,8 +103,20 @@ JsonNode SceneBuilder::resolve(const JsonNode& node) const {
     unknownName("entry of the scene", id.string(), names, id.where());
 }
 
-uint32_t SceneBuilder::addMaterial(const Material& material) {
-    scene_.materials.push_back(material);
+uint32_t SceneBuilder::texture(const JsonNode& node, const ParameterInfo& parameter) {
+    const JsonNode plugin = named(node, PluginKind::Textures, "texture");
+    const auto known = textures_.find(plugin.pointer());
+    if (known != textures_.end()) {
+        checkTexture(scene_.textures[known->second], plugin, parameter);
+        return known->second;
+    }
+    scene_.textures.push_back(readTexture(plugin, context_));
+    checkTexture(scene_.textures.back(), plugin, parameter);
+    return textures_[plugin.pointer()] = uint32_t(scene_.textures.size() - 1);
+}
+
+uint32_t SceneBuilder::addMaterial(Material material) {
+    scene_.materials.push_back(std::move(material));
     return uint32_t(scene_.materials.size() - 1);
 }
 
@@ -108,8 +124,7 @@ uint32_t SceneBuilder::material(const JsonNode& node) {
     const JsonNode plugin = resolve(node);
     const auto known = materials_.find(plugin.pointer());
     if (known != materials_.end()) return known->second;
-    const Material material = readMaterial(plugin, [this](const JsonNode& nested) { return resolve(nested); });
-    return materials_[plugin.pointer()] = addMaterial(material);
+    return materials_[plugin.pointer()] = addMaterial(readMaterial(plugin, *this));
 }
 
 void SceneBuilder::addShape(const JsonNode& node) {
@@ -125,7 +140,7 @@ void SceneBuilder::addShape(const JsonNode& node) {
         if (contains(emitterPlugins(), name)) {
             if (shape.emitter != kNone) nested.fail("a shape has at most one emitter");
             shape.emitter = uint32_t(scene_.emitters.size());
-            scene_.emitters.push_back(readAreaEmitter(nested, index));
+            scene_.emitters.push_back(readAreaEmitter(nested, index, *this));
         } else if (name == "ref" || contains(bsdfPlugins(), name)) {
             if (covering) nested.fail("a shape has at most one BSDF");
             covering = material(nested);
@@ -140,11 +155,10 @@ void SceneBuilder::addShape(const JsonNode& node) {
 }
 
 void SceneBuilder::addEmitter(const JsonNode& node) {
-    const Emitter emitter = readEmitter(node);
-    const auto isConstant = [](const Emitter& e) { return std::holds_alternative<ConstantEmitter>(e); };
-    if (isConstant(emitter) && std::any_of(scene_.emitters.begin(), scene_.emitters.end(), isConstant))
-        node.fail("a scene has at most one constant emitter");
-    scene_.emitters.push_back(emitter);
+    Emitter emitter = readEmitter(node, context_);
+    if (isEnvironment(emitter) && std::any_of(scene_.emitters.begin(), scene_.emitters.end(), isEnvironment))
+        node.fail("a scene has at most one environment, constant or envmap");
+    scene_.emitters.push_back(std::move(emitter));
 }
 
 Scene SceneBuilder::build(const JsonNode& film) {
@@ -158,7 +172,7 @@ Scene SceneBuilder::build(const JsonNode& film) {
             material(entry);
         else if (contains(emitterPlugins(), name))
             addEmitter(entry);
-        else if (!contains(sensorPlugins(), name))
+        else if (!contains(sensorPlugins(), name) && !(contains(texturePlugins(), name) && name != "rgb"))  // textures: when used
             unknownPlugin(entry, "scene plugin", sceneEntries());
     }
     const JsonNode sensor = sensorNode();

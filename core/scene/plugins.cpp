@@ -5,22 +5,15 @@
 #include "core/scene/loading/materials.h"
 #include "core/scene/loading/sensors.h"
 #include "core/scene/loading/shapes.h"
+#include "core/scene/loading/textures.h"
 
 namespace ulam {
 namespace {
 
-struct RgbParameters {
-    JsonNode value;
-    template <class V>
-    void describe(V& v) {
-        v("value", value, {.help = "a number or [r,g,b], linear Rec. 709"});
-    }
-};
-
 std::vector<PluginInfo> generators() {
     std::vector<PluginInfo> result;
     for (const auto* entry : Registry<Generator>::instance().entries())
-        result.push_back({entry->name, entry->summary, entry->parameters});
+        result.push_back({entry->name, entry->summary, entry->parameters, {}});
     return result;
 }
 
@@ -28,6 +21,10 @@ std::vector<PluginInfo> generators() {
 Json pluginSchema(const PluginInfo& plugin, bool open) {
     Json schema = jsonSchema(plugin.parameters);
     schema["description"] = plugin.summary;
+    for (const std::string& name : plugin.textured) {
+        Json& plain = schema["properties"][name];
+        plain = {{"anyOf", Json::array({plain, {{"$ref", "#/definitions/plugin"}}})}, {"description", plain["description"]}};
+    }
     schema["properties"]["type"] = {{"const", plugin.name}};
     schema["properties"]["id"] = {{"type", "string"}};
     schema["required"] = Json::array({"type"});
@@ -48,7 +45,7 @@ std::vector<PluginInfo> scenePlugins(PluginKind kind) {
         case PluginKind::Sensors:
             return sensorPlugins();
         case PluginKind::Textures:
-            return {{"rgb", "one colour", parameterInfo<RgbParameters>()}};
+            return texturePlugins();
         case PluginKind::Films:
             return filmPlugins();
         case PluginKind::Filters:
@@ -62,7 +59,7 @@ std::vector<PluginInfo> scenePlugins(PluginKind kind) {
 Json sceneSchema() {
     Json plugins = Json::array();
     for (const PluginKind kind :
-         {PluginKind::Shapes, PluginKind::Bsdfs, PluginKind::Emitters, PluginKind::Sensors, PluginKind::Films})
+         {PluginKind::Shapes, PluginKind::Bsdfs, PluginKind::Emitters, PluginKind::Sensors, PluginKind::Textures, PluginKind::Films})
         for (const PluginInfo& plugin : scenePlugins(kind)) plugins.push_back(pluginSchema(plugin, true));
     plugins.push_back({{"type", "object"},
                        {"properties", {{"type", {{"const", "ref"}}}, {"id", {{"type", "string"}}}}},

@@ -14,6 +14,7 @@ struct PluginInfo {
     std::string name;
     std::string summary;
     std::vector<ParameterInfo> parameters;
+    std::vector<std::string> textured = {};  ///< parameters in whose place a texture may stand
 };
 
 /// The plugins of a kind; generators are those registered in the program.

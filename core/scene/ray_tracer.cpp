@@ -11,6 +11,7 @@
 #include <xmmintrin.h>
 
 #include <limits>
+#include <optional>
 
 namespace ulam {
 namespace {
@@ -41,16 +42,99 @@ void set(RTCRay& ray, const Vec3f& o, const Vec3f& d, float tfar) {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
+// Shapes that Embree does not know, in double: their own coordinates may be far from the world's origin.
+
+struct Crossing {
+    double distance;
+    Vec2f uv{0, 0};
+};
+
+std::optional<Crossing> meet(const Disk& disk, const Vec3d& o, const Vec3d& d, double near, double far) {
+    const Vec3d x(disk.axisX), y(disk.axisY), n = x.cross(y), from = Vec3d(disk.center) - o;
+    const double t = n.dot(from) / n.dot(d);
+    if (!(t > near && t < far)) return std::nullopt;
+    const Vec3d p = d * t - from;
+    const double n2 = n.dot(n), u = p.cross(y).dot(n) / n2, v = x.cross(p).dot(n) / n2;
+    if (u * u + v * v > 1) return std::nullopt;
+    return Crossing{t, {float(u), float(v)}};
+}
+
+std::optional<Crossing> meet(const Cylinder& cylinder, const Vec3d& o, const Vec3d& d, double near, double far) {
+    const Vec3d from = o - Vec3d(cylinder.base), axis(cylinder.axes[2]);
+    const double height = from.dot(axis), climb = d.dot(axis);
+    const Vec3d p = from - axis * height, q = d - axis * climb;  // across the axis
+    const double a = q.dot(q), b = p.dot(q), c = p.dot(p) - double(cylinder.radius) * cylinder.radius;
+    const double discriminant = b * b - a * c;
+    if (!(a > 0 && discriminant >= 0)) return std::nullopt;
+    const double s = -b - std::copysign(std::sqrt(discriminant), b);  // the root without cancellation
+    const double first = s / a, second = c / s;
+    for (const double t : {std::min(first, second), std::max(first, second)}) {
+        const double z = height + climb * t;
+        if (t > near && t < far && z >= 0 && z <= cylinder.length) return Crossing{t};
+    }
+    return std::nullopt;
+}
+
+template <class G>
+std::optional<Crossing> meet(const void* shape, const RTCRay& ray) {
+    return meet(std::get<G>(static_cast<const Shape*>(shape)->geometry), Vec3d(ray.org_x, ray.org_y, ray.org_z), Vec3d(ray.dir_x, ray.dir_y, ray.dir_z),
+                 ray.tnear, ray.tfar);
+}
+
+// Embree's callbacks; single rays only are cast here, so N = 1.
+
+template <class G>
+void intersectUser(const RTCIntersectFunctionNArguments* args) {
+    if (!args->valid[0]) return;
+    RTCRayHit& ray = *reinterpret_cast<RTCRayHit*>(args->rayhit);
+    const auto crossing = meet<G>(args->geometryUserPtr, ray.ray);
+    if (!crossing) return;
+    ray.ray.tfar = float(crossing->distance);
+    ray.hit.geomID = args->geomID;
+    ray.hit.primID = args->primID;
+    ray.hit.instID[0] = args->context->instID[0];
+    ray.hit.u = crossing->uv.x, ray.hit.v = crossing->uv.y;
+}
+
+template <class G>
+void occludedUser(const RTCOccludedFunctionNArguments* args) {
+    if (!args->valid[0]) return;
+    RTCRay& ray = *reinterpret_cast<RTCRay*>(args->ray);
+    if (meet<G>(args->geometryUserPtr, ray)) ray.tfar = -kInfinity;
+}
+
+void boundsOfShape(const RTCBoundsFunctionArguments* args) {
+    const Imath::Box3f box = static_cast<const Shape*>(args->geometryUserPtr)->bounds();
+    RTCBounds& b = *args->bounds_o;
+    // Rounded outwards: hits are found in double.
+    const float slack = 1e-5f * (std::max({length(box.min), length(box.max)}) + length(box.size()));
+    b.lower_x = box.min.x - slack, b.lower_y = box.min.y - slack, b.lower_z = box.min.z - slack;
+    b.upper_x = box.max.x + slack, b.upper_y = box.max.y + slack, b.upper_z = box.max.z + slack;
+}
+
 }  // namespace
 
 struct RayTracer::Embree {
     // One thread builds, so that the tree is the same every time.
     RTCDevice device = rtcNewDevice("threads=1,set_affinity=0");
     RTCScene scene = nullptr;
+    std::vector<std::unique_ptr<const Shape>> userShapes;  ///< what the callbacks look at
 
     ~Embree() {
         if (scene) rtcReleaseScene(scene);
         rtcReleaseDevice(device);
+    }
+
+    template <class G>
+    RTCGeometry user(const Shape& shape) {
+        userShapes.push_back(std::make_unique<const Shape>(shape));
+        RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
+        rtcSetGeometryUserPrimitiveCount(geometry, 1);
+        rtcSetGeometryUserData(geometry, const_cast<Shape*>(userShapes.back().get()));
+        rtcSetGeometryBoundsFunction(geometry, boundsOfShape, nullptr);
+        rtcSetGeometryIntersectFunction(geometry, intersectUser<G>);
+        rtcSetGeometryOccludedFunction(geometry, occludedUser<G>);
+        return geometry;
     }
 
     void check() const {
@@ -78,6 +162,10 @@ RayTracer::RayTracer(std::span<const Shape> shapes) : embree_(std::make_unique<E
             if (!p || !t) embree_->check();
             std::copy(mesh->positions.begin(), mesh->positions.end(), p);
             std::copy(mesh->triangles.begin(), mesh->triangles.end(), t);
+        } else if (std::holds_alternative<Disk>(shapes[i].geometry)) {
+            geometry = embree_->user<Disk>(shapes[i]);
+        } else if (std::holds_alternative<Cylinder>(shapes[i].geometry)) {
+            geometry = embree_->user<Cylinder>(shapes[i]);
         } else {
             const Sphere& sphere = std::get<Sphere>(shapes[i].geometry);
             geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_SPHERE_POINT);

@@ -11,7 +11,7 @@ namespace ulam {
 struct Hit {
     uint32_t shape, primitive;
     float distance;
-    Vec2f uv;
+    Vec2f uv;  ///< barycentric on triangles; a place on the unit disc (Disk)
 };
 
 class RayTracer {

@@ -2,34 +2,41 @@
 
 #include "core/base/error.h"
 
-#include <Imath/ImathBox.h>
-
 namespace ulam {
 
 void Scene::finalize() {
     Imath::Box3f box;
     for (Shape& shape : shapes) {
         shape.prepare();
-        if (const Mesh* mesh = std::get_if<Mesh>(&shape.geometry)) {
-            for (const Vec3f& p : mesh->positions) box.extendBy(p);
-        } else {
-            const Sphere& sphere = std::get<Sphere>(shape.geometry);
-            box.extendBy(sphere.center - Vec3f(sphere.radius));
-            box.extendBy(sphere.center + Vec3f(sphere.radius));
-        }
+        box.extendBy(shape.bounds());
     }
     if (!box.isEmpty()) bounds_ = {box.center(), std::max(1e-6f, length(box.size()) / 2) * 1.0001f};
 
+    for (Emitter& emitter : emitters)
+        if (auto* area = std::get_if<AreaEmitter>(&emitter); area && area->texture != kNone) area->emitted = meanRadiance(*area);
     std::vector<double> powers;
     for (uint32_t i = 0; i < emitters.size(); ++i) {
         powers.push_back(dispatch(emitters[i], [&](const auto& e) { return e.power(emission(i)); }));
-        if (std::holds_alternative<ConstantEmitter>(emitters[i])) environment = i;
+        if (isEnvironment(emitters[i])) environment = i;
     }
     double total = 0;
     for (double p : powers) total += p;
     if (!(total > 0)) fail(ExitCode::InvalidConfig, "the scene has no light: add an emitter with positive radiance or intensity");
     emitterChoice_ = DiscreteDistribution(powers);
     rays_ = RayTracer(shapes);
+}
+
+Spectrum Scene::meanRadiance(const AreaEmitter& area) const {
+    // Points of a lattice over the numbers that make uniform points: fine enough to choose lights by.
+    constexpr int kSide = 64;
+    Spectrum sum(0.0);
+    const Shape& shape = shapes[area.shape];
+    for (int i = 0; i < kSide; ++i)
+        for (int j = 0; j < kSide; ++j) {
+            const Vertex v = shape.samplePoint(area.shape, (i + 0.5) / kSide, (j + 0.5) / kSide);
+            sum += textureColor(textures[area.texture], shape.texcoord(v)) / (kSide * kSide);
+        }
+    return sum;
 }
 
 void Scene::vertexAt(const Vec3f& origin, const Vec3f& direction, const Hit& hit, Vertex& v) const {
@@ -44,10 +51,16 @@ void Scene::vertexAt(const Vec3f& origin, const Vec3f& direction, const Hit& hit
         const auto& t = mesh->triangles[hit.primitive];
         const Vec3f &a = mesh->positions[t[0]], &b = mesh->positions[t[1]], &c = mesh->positions[t[2]];
         v.position = a + (b - a) * hit.uv.x + (c - a) * hit.uv.y;
+    } else if (const Sphere* sphere = std::get_if<Sphere>(&shape.geometry)) {
+        const Vec3f outward = normalize(origin + direction * hit.distance - sphere->center);
+        v.position = sphere->center + outward * sphere->radius;
+    } else if (const Disk* disk = std::get_if<Disk>(&shape.geometry)) {
+        v.position = disk->center + disk->axisX * hit.uv.x + disk->axisY * hit.uv.y;
     } else {
-        const Sphere& sphere = std::get<Sphere>(shape.geometry);
-        const Vec3f outward = normalize(origin + direction * hit.distance - sphere.center);
-        v.position = sphere.center + outward * sphere.radius;
+        const Cylinder& cylinder = std::get<Cylinder>(shape.geometry);
+        const Vec3f d = origin + direction * hit.distance - cylinder.base;
+        const Vec3f up = cylinder.axes[2] * dot(d, cylinder.axes[2]);
+        v.position = cylinder.base + up + normalize(d - up) * cylinder.radius;
     }
     shape.setNormals(v);
 }

@@ -1,10 +1,10 @@
 #pragma once
 // A scene ready to be rendered: shapes, materials, emitters, sensor and ray tracing, in flat arrays that vertices index.
 
-#include "core/scene/bsdf.h"
+#include "core/image/filter.h"
 #include "core/scene/emitter.h"
 #include "core/scene/features.h"
-#include "core/image/filter.h"
+#include "core/scene/material.h"
 #include "core/scene/ray_tracer.h"
 #include "core/scene/sensors/perspective.h"
 
@@ -18,6 +18,7 @@ class Scene {
 public:
     std::vector<Shape> shapes;
     std::vector<Material> materials;
+    std::vector<Texture> textures;
     std::vector<Emitter> emitters;
     uint32_t environment = kNone;  ///< index of the emitter at infinity
     std::optional<Perspective> sensor;
@@ -29,7 +30,7 @@ public:
     /// Call once after the arrays are filled: areas, bounds, light selection, acceleration structure.
     void finalize();
 
-    EmissionContext emission(uint32_t emitter) const { return {shapes, bounds_, emitter}; }
+    EmissionContext emission(uint32_t emitter) const { return {shapes, textures, bounds_, emitter}; }
     const BoundingSphere& bounds() const { return bounds_; }
     /// Emitters are chosen by power, for emission and for next-event estimation alike.
     const DiscreteDistribution& emitterChoice() const { return emitterChoice_; }
@@ -45,6 +46,8 @@ public:
     void vertexAt(const Vec3f& origin, const Vec3f& direction, const Hit& hit, Vertex& v) const;
 
 private:
+    Spectrum meanRadiance(const AreaEmitter& area) const;
+
     BoundingSphere bounds_;
     DiscreteDistribution emitterChoice_;
     RayTracer rays_;

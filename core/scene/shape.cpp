@@ -9,6 +9,51 @@ Vec3d areaVector(const Mesh& mesh, const std::array<uint32_t, 3>& t) {
     return (b - a).cross(c - a);
 }
 
+Vec3f inAxes(const Axes& axes, const Vec3f& v) { return {dot(v, axes[0]), dot(v, axes[1]), dot(v, axes[2])}; }
+
+Vec3f outward(const Sphere& sphere, const Vec3f& p) { return normalize(p - sphere.center); }
+Vec3f outward(const Cylinder& cylinder, const Vec3f& p) {
+    const Vec3f place = inAxes(cylinder.axes, p - cylinder.base);
+    return normalize(cylinder.axes[0] * place.x + cylinder.axes[1] * place.y);
+}
+
+Vec2f texcoordOf(const Mesh& mesh, const Vertex& v) {
+    if (mesh.texcoords.empty()) return v.uv;
+    const auto& [i, j, k] = mesh.triangles[v.primitive];
+    return mesh.texcoords[i] * (1 - v.uv.x - v.uv.y) + mesh.texcoords[j] * v.uv.x + mesh.texcoords[k] * v.uv.y;
+}
+Vec2f texcoordOf(const Sphere& sphere, const Vertex& v) {
+    const Vec3f p = inAxes(sphere.axes, v.position - sphere.center);
+    return {float(inverseAzimuth(p.x, p.y)), float(std::atan2(std::hypot(p.x, p.y), p.z) / kPi)};
+}
+Vec2f texcoordOf(const Disk&, const Vertex& v) { return {v.uv.length(), float(inverseAzimuth(v.uv.x, v.uv.y))}; }
+Vec2f texcoordOf(const Cylinder& cylinder, const Vertex& v) {
+    const Vec3f p = inAxes(cylinder.axes, v.position - cylinder.base);
+    return {float(inverseAzimuth(p.x, p.y)), p.z / cylinder.length};
+}
+
+Vec3f tangentOf(const Mesh& mesh, const Vertex& v) {
+    const auto& [i, j, k] = mesh.triangles[v.primitive];
+    if (!mesh.texcoords.empty()) {
+        const Vec2f a = mesh.texcoords[j] - mesh.texcoords[i], b = mesh.texcoords[k] - mesh.texcoords[i];
+        const float determinant = a.x * b.y - a.y * b.x;
+        const Vec3f t = (mesh.positions[j] - mesh.positions[i]) * b.y - (mesh.positions[k] - mesh.positions[i]) * a.y;
+        if (determinant != 0 && length2(t) > 0) return determinant > 0 ? t : -t;
+    }
+    return Frame(v.normal).s;
+}
+/// Around the third axis; at the poles any direction will do.
+Vec3f aroundAxis(const Axes& axes, const Vec3f& p) {
+    const Vec3f t = axes[1] * dot(p, axes[0]) - axes[0] * dot(p, axes[1]);
+    return length2(t) > 0 ? t : axes[0];
+}
+Vec3f tangentOf(const Sphere& sphere, const Vertex& v) { return aroundAxis(sphere.axes, v.position - sphere.center); }
+Vec3f tangentOf(const Disk& disk, const Vertex& v) {
+    const Vec3f t = disk.axisX * v.uv.x + disk.axisY * v.uv.y;
+    return length2(t) > 0 ? t : disk.axisX;
+}
+Vec3f tangentOf(const Cylinder& cylinder, const Vertex& v) { return aroundAxis(cylinder.axes, v.position - cylinder.base); }
+
 }  // namespace
 
 void Shape::setNormals(Vertex& v) const {
@@ -20,10 +65,21 @@ void Shape::setNormals(Vertex& v) const {
             mesh->normals[i] * (1 - v.uv.x - v.uv.y) + mesh->normals[j] * v.uv.x + mesh->normals[k] * v.uv.y;
         // Opposite normals may cancel out.
         if (length2(n) > 0) v.shadingNormal = normalize(n);
+    } else if (const Disk* disk = std::get_if<Disk>(&geometry)) {
+        v.normal = v.shadingNormal = disk->normal;
     } else {
-        const Vec3f outward = normalize(v.position - std::get<Sphere>(geometry).center);
-        v.normal = v.shadingNormal = flipNormals ? -outward : outward;
+        const Sphere* sphere = std::get_if<Sphere>(&geometry);
+        const Vec3f n = sphere ? outward(*sphere, v.position) : outward(std::get<Cylinder>(geometry), v.position);
+        v.normal = v.shadingNormal = flipNormals ? -n : n;
     }
+}
+
+Vec2f Shape::texcoord(const Vertex& v) const {
+    return std::visit([&](const auto& g) { return texcoordOf(g, v); }, geometry);
+}
+
+Vec3f Shape::tangent(const Vertex& v) const {
+    return std::visit([&](const auto& g) { return tangentOf(g, v); }, geometry);
 }
 
 Vertex Shape::samplePoint(uint32_t shapeIndex, double u, double v) const {
@@ -37,17 +93,28 @@ Vertex Shape::samplePoint(uint32_t shapeIndex, double u, double v) const {
         const auto& [i, j, k] = mesh->triangles[x.primitive];
         const Vec3f &a = mesh->positions[i], &b = mesh->positions[j], &c = mesh->positions[k];
         x.position = a + (b - a) * x.uv.x + (c - a) * x.uv.y;
+    } else if (const Sphere* sphere = std::get_if<Sphere>(&geometry)) {
+        x.position = sphere->center + squareToSphere(u, v) * sphere->radius;
+    } else if (const Disk* disk = std::get_if<Disk>(&geometry)) {
+        x.uv = squareToDisc(u, v);
+        x.position = disk->center + disk->axisX * x.uv.x + disk->axisY * x.uv.y;
     } else {
-        const Sphere& sphere = std::get<Sphere>(geometry);
-        x.position = sphere.center + squareToSphere(u, v) * sphere.radius;
+        const Cylinder& cylinder = std::get<Cylinder>(geometry);
+        const double phi = 2 * kPi * u;
+        const auto& [a, b, c] = cylinder.axes;
+        x.position = cylinder.base + (a * float(std::cos(phi)) + b * float(std::sin(phi))) * cylinder.radius + c * float(v * cylinder.length);
     }
     setNormals(x);
     return x;
 }
 
 Sample2 Shape::invertPoint(const Vertex& v) const {
-    if (const Sphere* sphere = std::get_if<Sphere>(&geometry))
-        return sphereToSquare(normalize(v.position - sphere->center));
+    if (const Sphere* sphere = std::get_if<Sphere>(&geometry)) return sphereToSquare(outward(*sphere, v.position));
+    if (std::holds_alternative<Disk>(geometry)) return discToSquare(v.uv.x, v.uv.y);
+    if (const Cylinder* cylinder = std::get_if<Cylinder>(&geometry)) {
+        const Vec3f p = inAxes(cylinder->axes, v.position - cylinder->base);
+        return {inverseAzimuth(p.x, p.y), std::clamp(double(p.z) / cylinder->length, 0.0, 1.0)};
+    }
     const Sample2 s = triangleToSquare(v.uv);
     return {triangles.invert(v.primitive, s.u), s.v};
 }
@@ -55,6 +122,14 @@ Sample2 Shape::invertPoint(const Vertex& v) const {
 void Shape::prepare() {
     if (const Sphere* sphere = std::get_if<Sphere>(&geometry)) {
         area = 4 * kPi * sphere->radius * sphere->radius;
+        return;
+    }
+    if (const Disk* disk = std::get_if<Disk>(&geometry)) {
+        area = kPi * Vec3d(disk->axisX).cross(Vec3d(disk->axisY)).length();
+        return;
+    }
+    if (const Cylinder* cylinder = std::get_if<Cylinder>(&geometry)) {
+        area = 2 * kPi * cylinder->radius * cylinder->length;
         return;
     }
     Mesh& mesh = std::get<Mesh>(geometry);
@@ -69,6 +144,26 @@ void Shape::prepare() {
         area += areas.back();
     }
     if (emitter != kNone) triangles = DiscreteDistribution(areas);
+}
+
+Imath::Box3f Shape::bounds() const {
+    Imath::Box3f box;
+    const auto around = [&box](const Vec3f& center, const Vec3f& reach) {
+        box.extendBy(center - reach);
+        box.extendBy(center + reach);
+    };
+    if (const Mesh* mesh = std::get_if<Mesh>(&geometry)) {
+        for (const Vec3f& p : mesh->positions) box.extendBy(p);
+    } else if (const Sphere* sphere = std::get_if<Sphere>(&geometry)) {
+        around(sphere->center, Vec3f(sphere->radius));
+    } else if (const Disk* disk = std::get_if<Disk>(&geometry)) {
+        const Vec3f &a = disk->axisX, &b = disk->axisY;
+        around(disk->center, {std::hypot(a.x, b.x), std::hypot(a.y, b.y), std::hypot(a.z, b.z)});
+    } else {
+        const Cylinder& cylinder = std::get<Cylinder>(geometry);
+        for (const float height : {0.0f, cylinder.length}) around(cylinder.base + cylinder.axes[2] * height, Vec3f(cylinder.radius));
+    }
+    return box;
 }
 
 }  // namespace ulam

@@ -1,8 +1,10 @@
 #pragma once
-// Shapes as the ray tracer and the light sampling see them: triangle meshes and spheres.
+// Shapes as the ray tracer and the light sampling see them. Surface parameters (u, v) follow Mitsuba 3.
 
 #include "core/base/discrete.h"
 #include "core/scene/vertex.h"
+
+#include <Imath/ImathBox.h>
 
 #include <array>
 #include <cstdint>
@@ -22,27 +24,53 @@ struct Mesh {
     std::vector<Vec3f> faceNormals;  ///< geometric, unit, one a triangle; filled by Shape::prepare()
 };
 
+/// Axes of an object in the world: unit vectors, orthogonal.
+using Axes = std::array<Vec3f, 3>;
+inline constexpr Axes kWorldAxes{Vec3f(1, 0, 0), Vec3f(0, 1, 0), Vec3f(0, 0, 1)};
+
+/// u: azimuth / 2π around the third axis; v: angle to it / π.
 struct Sphere {
     Vec3f center;
     float radius;
+    Axes axes = kWorldAxes;
+};
+
+/// Any affine picture of the unit disc: center + x axisX + y axisY. (u, v) = (radius, azimuth / 2π) on the unit disc; a
+/// vertex's `uv` holds (x, y).
+struct Disk {
+    Vec3f center, axisX, axisY, normal;
+};
+
+/// Open at both ends: the points at `radius` from the third axis, at heights 0 to `length` along it. u: azimuth / 2π;
+/// v: height / length.
+struct Cylinder {
+    Vec3f base;
+    float radius, length;
+    Axes axes = kWorldAxes;
 };
 
 inline constexpr uint32_t kNone = 0xffffffffu;
 
 struct Shape {
-    std::variant<Mesh, Sphere> geometry;
+    std::variant<Mesh, Sphere, Disk, Cylinder> geometry;
     uint32_t material = 0;    ///< index into Scene::materials
     uint32_t emitter = kNone; ///< index into Scene::emitters of its area light
-    bool flipNormals = false; ///< normals of a sphere point inwards (a mesh has it in its data)
+    bool flipNormals = false; ///< normals of a sphere or cylinder point inwards (others have it in their data)
     std::string id;           ///< the name in the scene file
     double area = 0;
     DiscreteDistribution triangles;  ///< by area; emitting meshes only
 
     /// Fills normal and shading normal of a vertex whose shape, primitive, uv and position are set.
     void setNormals(Vertex& v) const;
+    /// Surface parameters of a vertex, for textures.
+    Vec2f texcoord(const Vertex& v) const;
+    /// ∂p/∂u, for anisotropic BSDFs: of any length, not 0.
+    Vec3f tangent(const Vertex& v) const;
     /// A point uniform by area from two numbers (density 1 / area), and the numbers of a point.
     Vertex samplePoint(uint32_t shapeIndex, double u, double v) const;
     Sample2 invertPoint(const Vertex& v) const;
+    /// Holds the shape.
+    Imath::Box3f bounds() const;
     /// Face normals, area and, on emitters, the distribution over triangles: call once the geometry is there.
     void prepare();
 };

@@ -41,7 +41,8 @@ double ceiling(const Scene& scene) {
             for (const auto& t : mesh->triangles)
                 normals[i].push_back(normalize(cross(mesh->positions[t[1]] - mesh->positions[t[0]],
                                                      mesh->positions[t[2]] - mesh->positions[t[0]])));
-    const Vec3f start = scene.sensor->samplePosition({}).position, ahead = scene.sensor->direction({256, 256});
+    const Vertex eye = scene.sensor->samplePosition({});
+    const Vec3f start = eye.position, ahead = scene.sensor->direction(eye, {256, 256});
     const float offset = 1e-4f * scene.bounds().radius;
     uint64_t state = 88172645463325252ull;
     const auto uniform = [&state] {

@@ -62,10 +62,17 @@ struct GridOfHolesParameters {
     }
 };
 
+/// A generator's parameters stand outside of any scene.
+struct NoScene : PluginResolver {
+    JsonNode resolve(const JsonNode& node) override { return node; }
+    uint32_t texture(const JsonNode& node, const ParameterInfo&) override { node.fail("a generator's BSDF takes no texture"); }
+};
+
 /// Reflectance of a plain diffuse BSDF.
 std::optional<Spectrum> diffuseReflectance(const JsonNode& bsdf) {
-    const Material material = readMaterial(bsdf, [](const JsonNode& node) { return node; });
-    const auto* plain = std::get_if<Diffuse>(&material.front);
+    NoScene none;
+    const Material material = readMaterial(bsdf, none);
+    const auto* plain = material.masked ? nullptr : std::get_if<Diffuse>(&material.front.bsdf);
     return plain ? std::optional(plain->reflectance) : std::nullopt;
 }
 

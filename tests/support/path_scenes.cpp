@@ -1,6 +1,9 @@
 #include "tests/support/path_scenes.h"
 
+#include <unistd.h>
+
 #include "core/base/error.h"
+#include "core/image/image_io.h"
 
 namespace ulam {
 namespace {
@@ -123,10 +126,62 @@ Json shadingNormals() {
     return scene;
 }
 
+/// A camera with a wide aperture looks through a cut-out sheet at what a spot and a lamp light.
+Json thinLens() {
+    Json scene = room();
+    scene["sensor"]["type"] = "thinlens";
+    scene["sensor"]["aperture_radius"] = 0.15;
+    scene["sensor"]["focus_distance"] = 3.0;
+    scene["lamp"] = lamp();
+    scene["spot"] = {{"type", "spot"}, {"intensity", {20, 15, 10}}, {"cutoff_angle", 35}};
+    scene["spot"]["to_world"] = {{{"type", "lookat"}, {"origin", {-0.6, 1.7, 0.8}}, {"target", {0.1, 0.2, -0.2}}, {"up", {0, 0, 1}}}};
+    scene["sheet"] = wall(0.5, {0, 1, 0}, 30, {0.2, 0.8, 0.9}, 0.5);
+    scene["sheet"]["bsdf"] = {{"type", "mask"},
+                              {"opacity", {{"type", "checkerboard"}, {"color0", 0.2}, {"color1", 0.8}, {"to_uv", {{{"type", "scale"}, {"value", 3}}}}}},
+                              {"inside", {{"type", "twosided"}, {"inside", diffuse(0.7)}}}};
+    scene["mirror"] = ball({-0.45, 0.45, -0.3}, 0.4, {{"type", "conductor"}, {"eta", {0.2, 0.9, 1.1}}, {"k", {3.9, 2.4, 2.2}}});
+    return scene;
+}
+
+/// A picture of the sky, the sun, a textured floor; a disc and an open cylinder, which shines.
+Json sunAndSky() {
+    Json scene = floorAndBack();
+    scene["floor"]["bsdf"]["reflectance"] = {{"type", "bitmap"}, {"filename", "sky.exr"}, {"to_uv", {{{"type", "scale"}, {"value", {2, 3, 1}}}}}};
+    scene["sky"] = {{"type", "envmap"}, {"filename", "sky.exr"}, {"scale", 2}, {"to_world", {{{"type", "rotate"}, {"axis", {0.2, 1, 0}}, {"angle", 40}}}}};
+    scene["sun"] = {{"type", "directional"}, {"direction", {0.4, -1, -0.6}}, {"irradiance", {2, 1.8, 1.5}}};
+    scene["glass"] = ball({0.4, 0.5, 0.3}, 0.4, {{"type", "dielectric"}, {"int_ior", 1.33}});
+    scene["disc"] = {{"type", "disk"},
+                     {"to_world", {{{"type", "scale"}, {"value", {0.5, 0.3, 1}}}, {{"type", "rotate"}, {"axis", {1, 0.5, 0}}, {"angle", -50}}, {{"type", "translate"}, {"value", {-0.7, 1, 0}}}}},
+                     {"bsdf", {{"type", "twosided"}, {"inside", diffuse(0.8)}}}};
+    scene["tube"] = {{"type", "cylinder"}, {"p0", {-0.6, 0.1, 0.5}}, {"p1", {-0.2, 0.4, 0.3}}, {"radius", 0.15}, {"bsdf", diffuse(0.4)}};
+    scene["tube"]["emitter"] = {{"type", "area"}, {"radiance", {{"type", "checkerboard"}, {"color0", {3, 2, 1}}, {"color1", 0.5}, {"to_uv", {{{"type", "scale"}, {"value", {4, 2, 1}}}}}}}};
+    return scene;
+}
+
+/// Holds sky.exr, a small picture.
+const std::filesystem::path& sceneFolder() {
+    static const struct Folder {
+        std::filesystem::path path = std::filesystem::temp_directory_path() / fmt::format("ulam_path_scenes_{}", getpid());
+        Folder() {
+            std::filesystem::create_directories(path);
+            Image sky(8, 5);
+            Random random(makeKey(77), 0, 0);
+            for (Rgb& pixel : sky.pixels)
+                for (int c = 0; c < 3; ++c) pixel[c] = float(0.9 * random() * random());
+            writeExr((path / "sky.exr").string(), sky);
+        }
+        ~Folder() {
+            std::error_code ignored;
+            std::filesystem::remove_all(path, ignored);
+        }
+    } folder;
+    return folder.path;
+}
+
 }  // namespace
 
 Scene buildScene(const Json& dictionary, const Json& film) {
-    return SceneDescription::fromNode(JsonNode(dictionary), "/nonexistent").build(film);
+    return SceneDescription::fromNode(JsonNode(dictionary), sceneFolder()).build(film);
 }
 
 const std::vector<NamedScene>& pathScenes() {
@@ -134,6 +189,7 @@ const std::vector<NamedScene>& pathScenes() {
         {"diffuse", diffuseRoom(), false, false},   {"glass_and_mirror", glassAndMirror(), true, false},
         {"point_light", pointLight(), true, false}, {"environment", environment(), true, true},
         {"many_lights", manyLights(), true, true},  {"shading_normals", shadingNormals(), true, false},
+        {"thin_lens", thinLens(), true, false},     {"sun_and_sky", sunAndSky(), true, true},
     };
     return scenes;
 }

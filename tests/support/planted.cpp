@@ -36,12 +36,9 @@ public:
         const Scene& scene = context.scene();
         const int k = x.path.length();
         const Vec2f raster = step_.sample(x.splats[0].raster, context.random.nextBlock());
-        const auto& window = scene.sensor->window();
-        if (!(raster.x >= window.min.x && raster.x < window.max.x && raster.y >= window.min.y &&
-              raster.y < window.max.y))
-            return p.reject = Reject::OffScreen, p;
+        if (!scene.sensor->contains(raster)) return p.reject = Reject::OffScreen, p;
         PathEdit edit(x, k - 2, k, 2, context, p.y);
-        if ((p.reject = edit.growFromCameraAlong(scene.sensor->direction(raster))) != Reject::None) return p;
+        if ((p.reject = edit.growFromCameraAlong(scene.sensor->direction(x.path.camera(), raster))) != Reject::None) return p;
         if constexpr (bug == Bug::Blind) {
             p.y.path[k - 1].lobe = p.y.path[k - 2].lobe = Lobe::Smooth;
             if (!evaluate(scene, p.y.path, k - 2, k, p.y.factors)) return p.reject = Reject::ZeroTarget, p;
@@ -61,12 +58,12 @@ private:
     double density(const Sample& from, const Sample& to, StepContext& context) const {
         const auto& sensor = *context.scene().sensor;
         const int k = to.path.length();
-        const auto rasterOf = [&](const Sample& s) { return sensor.raster(-s.factors.edge[size_t(k - 1)].direction); };
-        const auto a = rasterOf(from), b = rasterOf(to);
-        if (!a || !b) return -std::numeric_limits<double>::infinity();
+        const auto respond = [&](const Sample& s) { return sensor.respond(s.path.camera(), -s.factors.edge[size_t(k - 1)].direction); };
+        const auto a = respond(from), b = respond(to);
+        if (!(a.pdf > 0 && b.pdf > 0)) return -std::numeric_limits<double>::infinity();
         const PathFactors& f = bug == Bug::Swapped ? from.factors : to.factors;
         const double camera = bug == Bug::Geometry ? f.at[size_t(k)].pdfToLight : f.fromCamera(k - 1);
-        return std::log(step_.pdf(*a, *b) * sensor.windowArea() * camera);
+        return std::log(step_.pdf(a.raster, b.raster) * sensor.windowArea() * camera);
     }
 
     RasterPerturbation step_{0.1, 20};

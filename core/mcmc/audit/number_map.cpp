@@ -166,12 +166,12 @@ private:
     }
 
     static std::pair<Vec3d, Vec3d> tangents(const Vertex& v) {
-        const Frame frame(v.onSurface() ? v.normal : v.kind == Vertex::Kind::Infinite ? v.position : Vec3f(0, 0, 1));
+        const Frame frame(v.hasNormal() ? v.normal : v.atInfinity() ? v.position : Vec3f(0, 0, 1));
         return {Vec3d(frame.s), Vec3d(frame.t)};
     }
 
-    /// Has coordinates that the numbers or a delta lobe chose? A point without surface has none.
-    bool isMade(int i) const { return path_[i].kind != Vertex::Kind::Point && made_[size_t(i)]; }
+    /// Has coordinates that the numbers or a delta lobe chose? Pinholes and delta lights have none.
+    bool isMade(int i) const { return path_[i].kind != Vertex::Kind::Point && path_[i].kind != Vertex::Kind::Direction && made_[size_t(i)]; }
 
     /// The length of the interval around number n in which the path stays.
     double probability(size_t n) {

@@ -136,8 +136,7 @@ std::string pathClass(const Path& path) {
     std::string text;
     for (int i = 0; i < path.size(); ++i) {
         const Vertex& v = path[i];
-        const char lobe = v.lobe == Lobe::Smooth ? 'S' : v.lobe == Lobe::DeltaReflection ? 'R' : 'T';
-        text += v.kind == Vertex::Kind::Point ? 'P' : v.kind == Vertex::Kind::Infinite ? 'I' : lobe;
+        text += v.onSurface() ? "SRTN"[int(v.lobe)] : "SLPID"[int(v.kind)];
     }
     return text;
 }

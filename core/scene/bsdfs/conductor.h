@@ -20,7 +20,13 @@ struct Conductor {
     };
     explicit Conductor(const Parameters& p) : eta(p.eta), k(p.k), specularReflectance(p.specularReflectance) {}
 
-    static constexpr bool hasDelta = true, hasSmooth = false;
+    static constexpr bool hasDelta = true, hasSmooth = false, hasNull = false, transmits = false;
+    template <class V>
+    static void textured(V& v) {
+        v("eta", &Conductor::eta);
+        v("k", &Conductor::k);
+        v("specular_reflectance", &Conductor::specularReflectance);
+    }
 
     double albedo() const { return maxComponent(specularReflectance); }
 

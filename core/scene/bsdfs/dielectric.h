@@ -24,7 +24,12 @@ struct Dielectric {
           specularReflectance(p.specularReflectance),
           specularTransmittance(p.specularTransmittance) {}
 
-    static constexpr bool hasDelta = true, hasSmooth = false;
+    static constexpr bool hasDelta = true, hasSmooth = false, hasNull = false, transmits = true;
+    template <class V>
+    static void textured(V& v) {
+        v("specular_reflectance", &Dielectric::specularReflectance);
+        v("specular_transmittance", &Dielectric::specularTransmittance);
+    }
 
     double albedo() const { return std::max(maxComponent(specularReflectance), maxComponent(specularTransmittance)); }
 

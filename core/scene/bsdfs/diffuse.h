@@ -15,7 +15,11 @@ struct Diffuse {
     };
     explicit Diffuse(const Parameters& p) : reflectance(p.reflectance) {}
 
-    static constexpr bool hasDelta = false, hasSmooth = true;
+    static constexpr bool hasDelta = false, hasSmooth = true, hasNull = false, transmits = false;
+    template <class V>
+    static void textured(V& v) {
+        v("reflectance", &Diffuse::reflectance);
+    }
 
     double albedo() const { return maxComponent(reflectance); }
 

@@ -7,9 +7,14 @@
 //   pdf(from, to, lobe)             density of `to` per solid angle when the walk arrived along `from`
 //   probability(from, to, lobe)     the part of pdf that chooses the lobe
 //   sampleLobe(from, lobe, u)       a direction of a given lobe, from u[0], u[1]
-//   sample(from, u)                 the same of a lobe chosen with u[2]
+//   sample(from, u)                 the same of a lobe chosen with u[2]; the smooth lobe has the upper end of it
 //   invert(from, to, lobe, u)       u such that sample(from, u) = to; numbers that do not matter stay as they are
 //   albedo()                        bounds the reflected fraction; the Russian roulette's probability of going on
+//   hasDelta, hasSmooth, hasNull    which lobes there are; hasNull where one of the delta lobes may be Lobe::Null
+//   transmits                       light reaches the other side, straight on or refracted
+//   smoothShare(from)               probability that sample() chooses the smooth lobe, where there are delta lobes too
+//   anisotropic()                   whether the azimuth matters (absent: it does not); x then is along ∂p/∂u
+//   textured(visit)                 names the members that a texture may stand for; nothing derived from them is kept
 // For delta lobes eval and pdf are the factors of δ_σ (lobe.h).
 
 #include "core/base/random.h"
@@ -35,9 +40,23 @@ Direction<T> reflected(const Direction<T>& w) {
     return {-w.x, -w.y, w.z};
 }
 
+/// Whether light of the lobe Null passes from one to the other.
+template <class V>
+bool goesThrough(const V& a, const V& b, Lobe lobe) {
+    return lobe == Lobe::Null && a.z * b.z < 0;
+}
+
 template <class T>
 Color<T> scaled(const Spectrum& c, T s) {
     return {T(c.x) * s, T(c.y) * s, T(c.z) * s};
+}
+
+/// Probability that a walk which arrived along `from` goes on by the smooth lobe.
+template <class B>
+double smoothShareOf(const B& bsdf, const Vec3f& from) {
+    if constexpr (!B::hasSmooth) return 0;
+    else if constexpr (!B::hasDelta) return 1;
+    else return bsdf.smoothShare(from);
 }
 
 }  // namespace ulam

@@ -1,5 +1,6 @@
 #pragma once
-// area: a surface that shines evenly in all directions of its front (Mitsuba 3 `area`).
+// area: a surface that shines evenly in all directions of its front (Mitsuba 3 `area`). The radiance may be textured; its
+// points are chosen uniformly all the same.
 
 #include "core/scene/emitters/emission.h"
 
@@ -14,8 +15,9 @@ struct AreaEmitter {
         }
     };
 
-    Spectrum emitted;
+    Spectrum emitted;  ///< where it is textured: the mean over the surface
     uint32_t shape;
+    uint32_t texture = kNone;
 
     static constexpr bool positionIsDelta = false;
 
@@ -45,8 +47,9 @@ struct AreaEmitter {
         u[1] = s.v;
     }
 
-    Spectrum radiance(const EmissionContext&, const Vertex& x0, const Vec3f& w) const {
-        return dot(x0.normal, w) > 0 ? emitted : Spectrum(0.0);
+    Spectrum radiance(const EmissionContext& c, const Vertex& x0, const Vec3f& w) const {
+        if (!(dot(x0.normal, w) > 0)) return Spectrum(0.0);
+        return texture == kNone ? emitted : textureColor(c.textures[texture], c.shapes[shape].texcoord(x0));
     }
 
     Vertex sampleDirect(const EmissionContext& c, const Vertex&, const Block& u) const { return samplePosition(c, u); }

@@ -1,7 +1,7 @@
 #pragma once
 // constant: the same radiance from every direction at infinity (Mitsuba 3 `constant`).
 
-#include "core/scene/emitters/emission.h"
+#include "core/scene/emitters/infinite.h"
 
 namespace ulam {
 
@@ -19,9 +19,7 @@ struct ConstantEmitter {
     static constexpr bool positionIsDelta = false;
 
     /// What enters the bounding sphere.
-    double power(const EmissionContext& c) const {
-        return luminance(emitted) * 4 * kPi * kPi * c.bounds.radius * c.bounds.radius;
-    }
+    double power(const EmissionContext& c) const { return luminance(emitted) * 4 * kPi / discPdf(c); }
 
     Vertex samplePosition(const EmissionContext& c, const Block& u) const {
         Vertex v{};
@@ -37,27 +35,15 @@ struct ConstantEmitter {
         u[2] = s.v;
     }
 
-    EmittedRay sampleDirection(const EmissionContext& c, const Vertex& x0, const Block& u) const {
-        const Frame frame(x0.position);
-        const Vec2f d = squareToDisc(u[0], u[1]) * c.bounds.radius;
-        return {c.bounds.center + frame.s * d.x + frame.t * d.y + frame.n * c.bounds.radius, -x0.position, discPdf(c)};
-    }
+    EmittedRay sampleDirection(const EmissionContext& c, const Vertex& x0, const Block& u) const { return rayThroughDisc(c, x0, u); }
     double directionPdf(const EmissionContext& c, const Vertex&, const Vec3f&) const { return discPdf(c); }
-    void invertDirection(const EmissionContext& c, const Vertex& x0, const Vertex& x1, Block& u) const {
-        const Vec3f d = Frame(x0.position).toLocal(x1.position - c.bounds.center) / c.bounds.radius;
-        const Sample2 s = discToSquare(d.x, d.y);
-        u[0] = s.u;
-        u[1] = s.v;
-    }
+    void invertDirection(const EmissionContext& c, const Vertex& x0, const Vertex& x1, Block& u) const { invertDisc(c, x0, x1, u); }
 
     Spectrum radiance(const EmissionContext&, const Vertex&, const Vec3f&) const { return emitted; }
 
     Vertex sampleDirect(const EmissionContext& c, const Vertex&, const Block& u) const { return samplePosition(c, u); }
     double directPdf(const EmissionContext&, const Vertex&, const Vertex&) const { return kSpherePdf; }
     void invertDirect(const EmissionContext& c, const Vertex& x0, Block& u) const { invertPosition(c, x0, u); }
-
-private:
-    static double discPdf(const EmissionContext& c) { return 1 / (kPi * c.bounds.radius * c.bounds.radius); }
 };
 
 }  // namespace ulam

@@ -2,7 +2,7 @@
 // What every emitter file uses. An emitter is a plain struct; beside each other it offers, for walks that start on it,
 //   samplePosition(context, u)  → x0            positionPdf(context, x0)
 //   sampleDirection(context, x0, u) → ray      directionPdf(context, x0, w)      w: direction of the light's travel
-//   radiance(context, x0, w)                     L_e (area, infinite) or intensity (point) along w
+//   radiance(context, x0, w)                     L_e (area, infinite), intensity (point) or irradiance (directional) along w
 // and for next-event estimation from a point of the scene
 //   sampleDirect(context, from, u) → x0         directPdf(context, from, x0)
 // each sampling routine with its inverse invert…: the numbers that give the same result, if there are any.
@@ -13,6 +13,7 @@
 #include "core/base/random.h"
 #include "core/base/warp.h"
 #include "core/scene/shape.h"
+#include "core/scene/texture.h"
 
 #include <optional>
 #include <span>
@@ -27,6 +28,7 @@ struct BoundingSphere {
 /// What an emitter may know of its scene.
 struct EmissionContext {
     std::span<const Shape> shapes;
+    std::span<const Texture> textures;
     BoundingSphere bounds;
     uint32_t index;  ///< of the emitter itself
 };

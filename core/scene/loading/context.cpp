@@ -5,6 +5,7 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/sha256.h"
+#include "core/image/image_io.h"
 
 namespace ulam {
 namespace {
@@ -13,7 +14,7 @@ constexpr std::size_t kLargestFile = std::size_t(4) << 30;
 
 }  // namespace
 
-std::string LoadContext::read(const JsonNode& filename) {
+std::filesystem::path LoadContext::locate(const JsonNode& filename) const {
     const std::filesystem::path path = filename.string();
     if (path.empty()) filename.expected("the name of a file");
     if (path.is_absolute() || std::find(path.begin(), path.end(), "..") != path.end())
@@ -26,10 +27,24 @@ std::string LoadContext::read(const JsonNode& filename) {
     if (failed || (!inside.empty() && *inside.begin() == ".."))
         filename.fail("the path leaves the folder of the scene by a link", "give a file below that folder");
     if (fs::exists(file, failed) && !fs::is_regular_file(file, failed)) filename.fail(fmt::format("{} is no regular file", file.string()));
+    return file;
+}
+
+std::string LoadContext::read(const JsonNode& filename) {
+    const std::filesystem::path file = locate(filename);
     try {
         std::string bytes = readFile(file, kLargestFile);
         fileHashes.push_back(sha256(bytes));
         return bytes;
+    } catch (const Error& error) {
+        fail(error.code(), "{} (named at {})", error.what(), filename.where());
+    }
+}
+
+Image LoadContext::readImage(const JsonNode& filename, bool raw) {
+    read(filename);  // for the hash
+    try {
+        return ulam::readImage(locate(filename).string(), raw ? Encoding::Raw : Encoding::ByFormat);
     } catch (const Error& error) {
         fail(error.code(), "{} (named at {})", error.what(), filename.where());
     }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/config/json.h"
+#include "core/image/image.h"
 
 namespace ulam {
 
@@ -16,6 +17,11 @@ struct LoadContext {
 
     /// The bytes of a file of the scene. A path that leaves the scene's folder fails, as does a missing file.
     std::string read(const JsonNode& filename);
+    /// The same of a picture; `raw` as in image_io.h. Pictures that are damaged, too large or hold NaN fail.
+    Image readImage(const JsonNode& filename, bool raw);
+
+private:
+    std::filesystem::path locate(const JsonNode& filename) const;
 };
 
 }  // namespace ulam

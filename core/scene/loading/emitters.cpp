@@ -17,11 +17,80 @@ struct PointParameters : PointEmitter::Parameters {
     }
 };
 
-Emitter readArea(const JsonNode& node) {
+struct SpotParameters : SpotEmitter::Parameters {
+    JsonNode toWorld;
+    template <class V>
+    void describe(V& v) {
+        SpotEmitter::Parameters::describe(v);
+        v("to_world", toWorld, {.help = "moves the light from the origin, where it shines along +z"});
+    }
+};
+
+struct DirectionalParameters : DirectionalEmitter::Parameters {
+    JsonNode direction, toWorld;
+    template <class V>
+    void describe(V& v) {
+        DirectionalEmitter::Parameters::describe(v);
+        v("direction", direction, {.help = "in which the light travels [x,y,z]; instead of to_world"});
+        v("to_world", toWorld, {.help = "turns the light, which travels along +z"});
+    }
+};
+
+struct EnvmapParameters : EnvmapEmitter::Parameters {
+    JsonNode filename, toWorld;
+    template <class V>
+    void describe(V& v) {
+        v("filename", filename, {.help = "picture of all directions (latitude and longitude), relative to the scene's folder and inside it"});
+        EnvmapEmitter::Parameters::describe(v);
+        v("to_world", toWorld, {.help = "turns the picture; its zenith is +y"});
+    }
+};
+
+Emitter readArea(const JsonNode& node, LoadContext&) {
     node.fail("an area emitter must be nested in a shape");
 }
 
-Emitter readPoint(const JsonNode& node) {
+Vec3f turned(const Matrix4& m, const Vec3d& direction) {
+    Vec3d out;
+    m.multDirMatrix(direction, out);
+    return Vec3f(out.normalized());
+}
+
+Emitter readSpot(const JsonNode& node, LoadContext&) {
+    const auto p = parsePlugin<SpotParameters>(node);
+    if (p.beamWidth > p.cutoffAngle)
+        node.at("beam_width").fail(fmt::format("beam_width {:g} is wider than cutoff_angle {:g}", p.beamWidth, p.cutoffAngle));
+    const Matrix4 m = parseTransform(p.toWorld);
+    Vec3d place(0.0);
+    m.multVecMatrix(Vec3d(0.0), place);
+    return SpotEmitter(p, Vec3f(place), turned(m, {0, 0, 1}));
+}
+
+Emitter readDirectional(const JsonNode& node, LoadContext&) {
+    const auto p = parsePlugin<DirectionalParameters>(node);
+    if (!p.direction.isNull() && !p.toWorld.isNull()) p.toWorld.fail("a directional emitter has either a direction or a to_world");
+    if (p.direction.isNull()) return DirectionalEmitter{p.irradiance, turned(parseTransform(p.toWorld), {0, 0, 1})};
+    const Vec3d direction = parseVector(p.direction);
+    if (!(direction.length() > 0)) p.direction.expected("a direction longer than 0");
+    return DirectionalEmitter{p.irradiance, Vec3f(direction.normalized())};
+}
+
+Emitter readEnvmap(const JsonNode& node, LoadContext& context) {
+    const auto p = parsePlugin<EnvmapParameters>(node);
+    const Matrix4 m = parseTransform(p.toWorld);
+    if (!uniformScale(m)) p.toWorld.fail("an envmap's to_world must keep angles: rotations and mirrorings only");
+    const JsonNode filename = node.at("filename");
+    Image image = context.readImage(filename, false);
+    if (image.width < 2 || image.height < 3)
+        filename.fail(fmt::format("the environment map has {} x {} pixels, it needs at least 2 x 3", image.width, image.height));
+    for (const Rgb& pixel : image.pixels)
+        if (pixel.x < 0 || pixel.y < 0 || pixel.z < 0) filename.fail("the environment map holds negative radiance");
+    auto map = std::make_shared<const EnvironmentMap>(std::move(image), p.scale, axesOf(m));
+    if (!(map->totalLuminance() > 0)) filename.fail("the environment map holds no light: it is black everywhere, or its scale is 0");
+    return EnvmapEmitter{std::move(map)};
+}
+
+Emitter readPoint(const JsonNode& node, LoadContext&) {
     const auto p = parsePlugin<PointParameters>(node);
     if (!p.position.isNull() && !p.toWorld.isNull())
         p.toWorld.fail("a point emitter has either a position or a to_world");
@@ -31,19 +100,22 @@ Emitter readPoint(const JsonNode& node) {
     return PointEmitter{p.intensity, Vec3f(place)};
 }
 
-Emitter readConstant(const JsonNode& node) {
+Emitter readConstant(const JsonNode& node, LoadContext&) {
     return ConstantEmitter{parsePlugin<ConstantEmitter::Parameters>(node).radiance};
 }
 
-const PluginTable<Emitter(const JsonNode&)>& table() {
-    static const PluginTable<Emitter(const JsonNode&)> plugins(
+const PluginTable<Emitter(const JsonNode&, LoadContext&)>& table() {
+    static const PluginTable<Emitter(const JsonNode&, LoadContext&)> plugins(
         "emitter", {
                        {{"area", "the surface of the shape that it is nested in, on the side of its normals",
-                         parameterInfo<AreaEmitter::Parameters>()},
+                         parameterInfo<AreaEmitter::Parameters>(), {"radiance"}},
                         readArea},
                        {{"constant", "the same radiance from everywhere", parameterInfo<ConstantEmitter::Parameters>()},
                         readConstant},
+                       {{"directional", "parallel light from infinity", parameterInfo<DirectionalParameters>()}, readDirectional},
+                       {{"envmap", "radiance from all around, from a picture", parameterInfo<EnvmapParameters>()}, readEnvmap},
                        {{"point", "the same intensity in all directions", parameterInfo<PointParameters>()}, readPoint},
+                       {{"spot", "a point that shines into a cone", parameterInfo<SpotParameters>()}, readSpot},
                    });
     return plugins;
 }
@@ -54,14 +126,16 @@ std::vector<PluginInfo> emitterPlugins() {
     return table().infos();
 }
 
-Emitter readAreaEmitter(const JsonNode& node, uint32_t shape) {
+Emitter readAreaEmitter(const JsonNode& node, uint32_t shape, PluginResolver& resolver) {
     if (table().find(node).read != &readArea)
         node.fail(fmt::format("{} cannot be nested in a shape; area can", inQuotes(pluginName(node))));
-    return AreaEmitter{parsePlugin<AreaEmitter::Parameters>(node).radiance, shape};
+    const auto textured = texturedParameters(node, table().find(node).info, resolver);
+    if (textured.empty()) return AreaEmitter{parsePlugin<AreaEmitter::Parameters>(node).radiance, shape};
+    return AreaEmitter{parseOtherParameters<AreaEmitter::Parameters>(node, {"radiance"}).radiance, shape, textured.front().texture};
 }
 
-Emitter readEmitter(const JsonNode& node) {
-    return table().find(node).read(node);
+Emitter readEmitter(const JsonNode& node, LoadContext& context) {
+    return table().find(node).read(node, context);
 }
 
 }  // namespace ulam

@@ -1,8 +1,7 @@
 #include "core/scene/loading/materials.h"
 
+#include <algorithm>
 #include <array>
-
-#include "core/scene/loading/plugin_table.h"
 
 namespace ulam {
 namespace {
@@ -33,42 +32,43 @@ double namedIndex(const JsonNode& node) {
     unknownName("index of refraction", node.string(), names, node.where());
 }
 
-using Resolve = std::function<JsonNode(const JsonNode&)>;
-
+/// As users see them: an index of refraction may be the name of a substance.
 template <class B>
-Material readPlain(const JsonNode& node, const Resolve&) {
-    return {B(parsePlugin<typename B::Parameters>(node)), {}};
-}
-
-Material readDielectric(const JsonNode& node, const Resolve&) {
-    Dielectric::Parameters parameters;
-    ParameterList all, numbers;
-    parameters.describe(all);
-    std::vector<std::string> named = structuralKeys(node, all.info());
-    for (const auto& parameter : all.parameters()) {
-        const auto value = node.find(parameter.name);
-        const auto* member = std::get_if<double*>(&parameter.member);
-        if (value && value->isString() && member) {
-            **member = namedIndex(*value);
-            named.push_back(parameter.name);
-        } else {
-            std::visit([&](auto* m) { numbers(parameter.name, *m, parameter.notes); }, parameter.member);
-        }
-    }
-    refuseTextures(node, all.info());
-    numbers.parse(node, named);
-    return {Dielectric(parameters), {}};
-}
-
-/// As users see them: an index may be a name.
-std::vector<ParameterInfo> dielectricParameters() {
-    auto parameters = parameterInfo<Dielectric::Parameters>();
-    for (ParameterInfo& parameter : parameters)
-        if (parameter.type == "number") {
+PluginInfo infoOf(const char* name, const char* summary) {
+    PluginInfo info{name, summary, parameterInfo<typename B::Parameters>(), {}};
+    for (ParameterInfo& parameter : info.parameters)
+        if (parameter.name == "int_ior" || parameter.name == "ext_ior") {
             parameter.type = "json";
             parameter.help += "; a number or a name such as \"water\"";
         }
-    return parameters;
+    auto list = [&](const char* parameter, auto) { info.textured.push_back(parameter); };
+    B::textured(list);
+    return info;
+}
+
+template <class B>
+Material readPlain(const JsonNode& node, PluginResolver& resolver) {
+    const PluginInfo info = infoOf<B>(pluginName(node).c_str(), "");
+    const auto textured = texturedParameters(node, info, resolver);
+    typename B::Parameters parameters;
+    ParameterList list;
+    parameters.describe(list);
+    std::vector<std::string> elsewhere = structuralKeys(node, info.parameters);
+    for (const TexturedParameter& t : textured) elsewhere.push_back(t.name);
+    for (const auto& parameter : list.parameters()) {
+        const auto value = node.find(parameter.name);
+        auto* const* member = std::get_if<double*>(&parameter.member);
+        if (!value || !value->isString() || !member || !parameter.name.ends_with("_ior")) continue;
+        **member = namedIndex(*value);
+        elsewhere.push_back(parameter.name);
+    }
+    list.parse(node, elsewhere);
+    Coating coating{B(parameters), {}};
+    for (const TexturedParameter& t : textured) {
+        const auto place = std::find(info.textured.begin(), info.textured.end(), t.name);
+        coating.bindings.push_back({int(place - info.textured.begin()), t.texture});
+    }
+    return Material(std::move(coating));
 }
 
 struct NoParameters {
@@ -76,32 +76,59 @@ struct NoParameters {
     void describe(V&) {}
 };
 
-Material readTwosided(const JsonNode& node, const Resolve& resolve) {
+Material readTwosided(const JsonNode& node, PluginResolver& resolver) {
     parsePlugin<NoParameters>(node);
-    std::vector<Bsdf> sides;
+    std::vector<Coating> sides;
     for (const JsonNode& nested : nestedPlugins(node, {})) {
-        const JsonNode side = resolve(nested);
+        const JsonNode side = resolver.resolve(nested);
         if (pluginName(side) == "twosided") nested.fail("twosided must not hold another twosided");
-        const Material material = readMaterial(side, resolve);
-        if (std::holds_alternative<Dielectric>(material.front))
+        Material material = readMaterial(side, resolver);
+        if (material.masked || dispatch(material.front.bsdf, [](const auto& bsdf) { return bsdf.transmits; }))
             nested.fail("twosided must not hold a BSDF that transmits light");
-        sides.push_back(material.front);
+        sides.push_back(std::move(material.front));
     }
     if (sides.empty() || sides.size() > 2)
         node.fail(fmt::format("twosided needs one or two BSDFs, not {}", sides.size()));
-    return {sides.front(), sides.back()};
+    return Material(sides.front(), sides.back());
 }
 
-const PluginTable<Material(const JsonNode&, const Resolve&)>& table() {
-    static const PluginTable<Material(const JsonNode&, const Resolve&)> plugins(
-        "bsdf",
-        {
-            {{"conductor", "smooth metal", parameterInfo<Conductor::Parameters>()}, readPlain<Conductor>},
-            {{"dielectric", "smooth interface of two transparent media", dielectricParameters()}, readDielectric},
-            {{"diffuse", "Lambertian reflection", parameterInfo<Diffuse::Parameters>()}, readPlain<Diffuse>},
-            {{"twosided", "one nested BSDF for both sides, or one for the front and one for the back", {}},
-             readTwosided},
-        });
+struct MaskParameters {
+    double opacity = 0.5;
+    template <class V>
+    void describe(V& v) {
+        v("opacity", opacity, {.help = "1: the nested BSDF alone; 0: nothing is there", .min = 0, .max = 1});
+    }
+};
+
+PluginInfo maskInfo() {
+    return {"mask", "one nested BSDF, partly cut out", parameterInfo<MaskParameters>(), {"opacity"}};
+}
+
+Material readMask(const JsonNode& node, PluginResolver& resolver) {
+    const PluginInfo info = maskInfo();
+    const auto textured = texturedParameters(node, info, resolver);
+    const auto nested = nestedPlugins(node, info.parameters);
+    if (nested.size() != 1) node.fail(fmt::format("mask needs one BSDF, not {}", nested.size()));
+    const JsonNode inside = resolver.resolve(nested.front());
+    if (pluginName(inside) == "mask") nested.front().fail("mask must not hold another mask");
+    Material material = readMaterial(inside, resolver);
+    if (textured.empty())
+        material.mask(parsePlugin<MaskParameters>(node).opacity, kNone);
+    else
+        material.mask(parseOtherParameters<MaskParameters>(node, {textured.front().name}).opacity, textured.front().texture);
+    return material;
+}
+
+const PluginTable<Material(const JsonNode&, PluginResolver&)>& table() {
+    static const PluginTable<Material(const JsonNode&, PluginResolver&)> plugins(
+        "bsdf", {
+                    {infoOf<Conductor>("conductor", "smooth metal"), readPlain<Conductor>},
+                    {infoOf<Dielectric>("dielectric", "smooth interface of two transparent media"), readPlain<Dielectric>},
+                    {infoOf<Diffuse>("diffuse", "Lambertian reflection"), readPlain<Diffuse>},
+                    {maskInfo(), readMask},
+                    {{"twosided", "one nested BSDF for both sides, or one for the front and one for the back", {}, {}},
+                     readTwosided},
+                });
     return plugins;
 }
 
@@ -111,14 +138,14 @@ std::vector<PluginInfo> bsdfPlugins() {
     return table().infos();
 }
 
-Material readMaterial(const JsonNode& node, const std::function<JsonNode(const JsonNode&)>& resolve) {
-    return table().find(node).read(node, resolve);
+Material readMaterial(const JsonNode& node, PluginResolver& resolver) {
+    return table().find(node).read(node, resolver);
 }
 
 Material defaultMaterial(bool emits) {
     Diffuse::Parameters parameters;
     if (emits) parameters.reflectance = Spectrum(0.0);
-    return {Diffuse(parameters), {}};
+    return Material({Diffuse(parameters), {}});
 }
 
 }  // namespace ulam

@@ -22,6 +22,16 @@ struct PerspectiveParameters : Perspective::Parameters {
     }
 };
 
+struct ThinLensParameters : PerspectiveParameters {
+    double apertureRadius = 0, focusDistance = 0;
+    template <class V>
+    void describe(V& v) {
+        PerspectiveParameters::describe(v);
+        v("aperture_radius", apertureRadius, {.help = "radius of the lens, in scene units", .min = 0});
+        v("focus_distance", focusDistance, {.help = "distance along the view at which the image is sharp", .min = 0});
+    }
+};
+
 constexpr int kMostPixels = 1 << 26;  // a film has hundreds of bytes a pixel
 
 struct FilmParameters {
@@ -108,7 +118,8 @@ int croppedLength(int size, int offset, int length, const char* axis, const Json
 }  // namespace
 
 std::vector<PluginInfo> sensorPlugins() {
-    return {{"perspective", "pinhole camera", parameterInfo<PerspectiveParameters>()}};
+    return {{"perspective", "pinhole camera", parameterInfo<PerspectiveParameters>()},
+            {"thinlens", "camera with an aperture and depth of field", parameterInfo<ThinLensParameters>()}};
 }
 std::vector<PluginInfo> filmPlugins() {
     return {{"hdrfilm", "size of the image and reconstruction filter", parameterInfo<FilmParameters>()}};
@@ -133,7 +144,7 @@ bool noteIfUnused(const JsonNode& node, LoadContext& context) {
 FilmSettings readFilm(const JsonNode& sensor, const JsonNode& replacement, LoadContext& context) {
     FilmParameters p;
     bool found = false;
-    for (const JsonNode& nested : nestedPlugins(sensor, parameterInfo<PerspectiveParameters>())) {
+    for (const JsonNode& nested : nestedPlugins(sensor, parameterInfo<ThinLensParameters>())) {
         if (noteIfUnused(nested, context)) continue;
         if (std::exchange(found, true)) nested.fail("a sensor has one film");
         readInto(p, nested, context);
@@ -154,8 +165,19 @@ FilmSettings readFilm(const JsonNode& sensor, const JsonNode& replacement, LoadC
 }
 
 Perspective readSensor(const JsonNode& node, const FilmSettings& film, LoadContext&) {
-    if (pluginName(node) != "perspective") unknownPlugin(node, "sensor", sensorPlugins());
-    auto p = parsePlugin<PerspectiveParameters>(node);
+    ThinLensParameters p;
+    Perspective::Aperture aperture;
+    if (pluginName(node) == "perspective") {
+        static_cast<PerspectiveParameters&>(p) = parsePlugin<PerspectiveParameters>(node);
+    } else if (pluginName(node) == "thinlens") {
+        p = parsePlugin<ThinLensParameters>(node);
+        const JsonNode radius = node.at("aperture_radius"), distance = node.at("focus_distance");
+        if (!(p.apertureRadius > 0)) radius.expected("a radius above 0", "a camera without aperture is a perspective");
+        if (!(p.focusDistance > 0)) distance.expected("a distance above 0");
+        aperture = {p.apertureRadius, p.focusDistance};
+    } else {
+        unknownPlugin(node, "sensor", sensorPlugins());
+    }
     const auto focalLength = node.find("focal_length");
     if (p.fov > 0 && focalLength) focalLength->fail("a sensor has fov or focal_length, not both");
     if (p.fov == 0) {
@@ -167,7 +189,7 @@ Perspective readSensor(const JsonNode& node, const FilmSettings& film, LoadConte
     if (!scale || std::abs(std::abs(*scale) - 1) > 1e-3) p.toWorld.fail("a camera's to_world must not scale or shear");
     // The filters of the outermost pixels reach this far beyond the image.
     const float margin = std::max(0.0f, film.filter.radius() - 0.5f);
-    return Perspective(p, toWorld, film.size, margin);
+    return Perspective(p, aperture, toWorld, film.size, margin);
 }
 
 }  // namespace ulam

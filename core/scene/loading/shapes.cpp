@@ -5,6 +5,8 @@
 #include "core/scene/loading/transform.h"
 #include "core/scene/mesh_io.h"
 
+#include <array>
+
 namespace ulam {
 namespace {
 
@@ -24,6 +26,18 @@ struct SphereParameters : PlacementParameters {
     template <class V>
     void describe(V& v) {
         v("center", center, {.help = "centre [x,y,z], before to_world; default the origin"});
+        v("radius", radius, {.help = "radius, before to_world", .min = 0, .minExclusive = true});
+        PlacementParameters::describe(v);
+    }
+};
+
+struct CylinderParameters : PlacementParameters {
+    JsonNode p0, p1;
+    double radius = 1;
+    template <class V>
+    void describe(V& v) {
+        v("p0", p0, {.help = "middle of one end [x,y,z], before to_world; default the origin"});
+        v("p1", p1, {.help = "middle of the other end; default [0,0,1]"});
         v("radius", radius, {.help = "radius, before to_world", .min = 0, .minExclusive = true});
         PlacementParameters::describe(v);
     }
@@ -51,13 +65,14 @@ struct ObjParameters : FileParameters {
 };
 
 struct MeshParameters {
-    JsonNode positions, triangles, normals;
+    JsonNode positions, triangles, normals, texcoords;
     template <class V>
     void describe(V& v) {
         v("positions", positions, {.help = "vertices x, y, z one after another, in world space"});
         v("triangles", triangles,
           {.help = "three vertex numbers a triangle, counted from 0, counter-clockwise seen from outside"});
         v("normals", normals, {.help = "x, y, z a vertex; none: flat shading"});
+        v("texcoords", texcoords, {.help = "u, v a vertex; none: barycentric coordinates"});
     }
 };
 
@@ -65,13 +80,14 @@ MeshPlacement placementOf(const PlacementParameters& p) {
     return {parseTransform(p.toWorld), p.flipNormals};
 }
 
-/// Corners in order around a face; two triangles.
-void addQuad(Mesh& mesh, const Vec3f& a, const Vec3f& b, const Vec3f& c, const Vec3f& d) {
+/// Corners in order around a face, with their texture coordinates; two triangles.
+void addQuad(Mesh& mesh, const std::array<Vec3f, 4>& corners, const std::array<Vec2f, 4>& texcoords) {
     const auto first = uint32_t(mesh.positions.size());
-    const Vec3f normal = normalize(cross(b - a, c - a));
-    for (const Vec3f& corner : {a, b, c, d}) {
-        mesh.positions.push_back(corner);
+    const Vec3f normal = normalize(cross(corners[1] - corners[0], corners[2] - corners[0]));
+    for (size_t i = 0; i < 4; ++i) {
+        mesh.positions.push_back(corners[i]);
         mesh.normals.push_back(normal);
+        mesh.texcoords.push_back(texcoords[i]);
     }
     mesh.triangles.push_back({first, first + 1, first + 2});
     mesh.triangles.push_back({first, first + 2, first + 3});
@@ -88,18 +104,24 @@ Shape placeFlat(Mesh mesh, const JsonNode& node, LoadContext& context) {
 
 Shape readRectangle(const JsonNode& node, LoadContext& context) {
     Mesh mesh;
-    addQuad(mesh, {-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0});
+    addQuad(mesh, {Vec3f(-1, -1, 0), Vec3f(1, -1, 0), Vec3f(1, 1, 0), Vec3f(-1, 1, 0)},
+            {Vec2f(0, 0), Vec2f(1, 0), Vec2f(1, 1), Vec2f(0, 1)});
     return placeFlat(std::move(mesh), node, context);
 }
 
 Shape readCube(const JsonNode& node, LoadContext& context) {
     Mesh mesh;
-    for (int axis = 0; axis < 3; ++axis)
-        for (const float side : {-1.0f, 1.0f}) {
-            Vec3f n(0.0f), s(0.0f), t(0.0f);
-            n[axis] = side, s[(axis + 1) % 3] = side, t[(axis + 2) % 3] = 1;  // s × t = n
-            addQuad(mesh, n - s - t, n + s - t, n + s + t, n - s + t);
-        }
+    // The direction of growing u on each face, as Mitsuba 3 has it; v grows along u × n.
+    const std::array<std::array<Vec3f, 2>, 6> faces{{{Vec3f(0, -1, 0), Vec3f(0, 0, 1)},
+                                                     {Vec3f(0, 1, 0), Vec3f(-1, 0, 0)},
+                                                     {Vec3f(1, 0, 0), Vec3f(0, 1, 0)},
+                                                     {Vec3f(0, 0, 1), Vec3f(0, 1, 0)},
+                                                     {Vec3f(-1, 0, 0), Vec3f(0, 1, 0)},
+                                                     {Vec3f(0, 0, -1), Vec3f(0, -1, 0)}}};
+    for (const auto& [n, s] : faces) {
+        const Vec3f t = cross(s, n);
+        addQuad(mesh, {n - s + t, n + s + t, n + s - t, n - s - t}, {Vec2f(0, 1), Vec2f(1, 1), Vec2f(1, 0), Vec2f(0, 0)});
+    }
     return placeFlat(std::move(mesh), node, context);
 }
 
@@ -115,10 +137,49 @@ Shape readSphere(const JsonNode& node, LoadContext&) {
     if (!(center.length() + radius <= kLargestCoordinate && radius > 1 / kLargestCoordinate))
         node.fail(fmt::format("the sphere's place or radius is beyond {0:g}, or the radius below 1/{0:g}",
                               kLargestCoordinate));
-    const Sphere sphere{Vec3f(center), float(radius)};
     Shape shape;
-    shape.geometry = sphere;
+    shape.geometry = Sphere{Vec3f(center), float(radius), axesOf(m)};
     shape.flipNormals = p.flipNormals != (*scale < 0);
+    return shape;
+}
+
+Shape readDisk(const JsonNode& node, LoadContext&) {
+    const auto p = parsePlugin<PlacementParameters>(node);
+    const Matrix4 m = parseTransform(p.toWorld);
+    Vec3d center, x, y, normal;
+    m.multVecMatrix(Vec3d(0.0), center);
+    m.multDirMatrix(Vec3d(1, 0, 0), x);
+    m.multDirMatrix(Vec3d(0, 1, 0), y);
+    m.inverse().transposed().multDirMatrix(Vec3d(0, 0, p.flipNormals ? -1 : 1), normal);
+    if (!(center.length() + x.length() + y.length() <= kLargestCoordinate))
+        node.fail(fmt::format("the disk reaches beyond {:g}", kLargestCoordinate));
+    Shape shape;
+    shape.geometry = Disk{Vec3f(center), Vec3f(x), Vec3f(y), Vec3f(normal.normalized())};
+    return shape;
+}
+
+Shape readCylinder(const JsonNode& node, LoadContext&) {
+    const auto p = parsePlugin<CylinderParameters>(node);
+    const Matrix4 m = parseTransform(p.toWorld);
+    const auto scale = uniformScale(m);
+    if (!scale) p.toWorld.fail("a cylinder's to_world must keep it round: rotations, translations and uniform scale only");
+    const Vec3d p0 = p.p0.isNull() ? Vec3d(0.0) : parseVector(p.p0), p1 = p.p1.isNull() ? Vec3d(0, 0, 1) : parseVector(p.p1);
+    const double length = (p1 - p0).length() * std::abs(*scale), radius = p.radius * std::abs(*scale);
+    if (!(length > 0)) node.fail("the cylinder has no length: p0 and p1 are the same point");
+    Vec3d base;
+    m.multVecMatrix(p0, base);
+    if (!(base.length() + length + radius <= kLargestCoordinate && radius > 1 / kLargestCoordinate))
+        node.fail(fmt::format("the cylinder reaches beyond {0:g}, or its radius is below 1/{0:g}", kLargestCoordinate));
+    const Frame own(Vec3f((p1 - p0).normalized()));
+    Axes axes;
+    for (size_t i = 0; i < 3; ++i) {
+        Vec3d axis;
+        m.multDirMatrix(Vec3d(i == 0 ? own.s : i == 1 ? own.t : own.n), axis);
+        axes[i] = Vec3f(axis.normalized());
+    }
+    Shape shape;
+    shape.geometry = Cylinder{Vec3f(base), float(radius), float(length), axes};
+    shape.flipNormals = p.flipNormals;
     return shape;
 }
 
@@ -158,6 +219,10 @@ Shape readInlineMesh(const JsonNode& node, LoadContext& context) {
     if (!p.normals.isNull()) mesh.normals = parsePoints(p.normals);
     if (!mesh.normals.empty() && mesh.normals.size() != mesh.positions.size())
         p.normals.expected(fmt::format("{} normals, one a vertex", mesh.positions.size()));
+    if (!p.texcoords.isNull()) {
+        const std::vector<double> numbers = p.texcoords.numbers(2 * mesh.positions.size());
+        for (size_t i = 0; i < numbers.size(); i += 2) mesh.texcoords.emplace_back(float(numbers[i]), float(numbers[i + 1]));
+    }
     const JsonNode triangles = node.at("triangles");
     const std::vector<double> indices = triangles.numbers();
     if (indices.size() % 3 != 0) triangles.expected("three vertex numbers a triangle");
@@ -177,6 +242,8 @@ const PluginTable<Shape(const JsonNode&, LoadContext&)>& table() {
         "shape",
         {
             {{"cube", "box [-1,1] in x, y and z, normals outwards", parameterInfo<PlacementParameters>()}, readCube},
+            {{"cylinder", "open cylinder, normals outwards", parameterInfo<CylinderParameters>()}, readCylinder},
+            {{"disk", "disc of radius 1 in x and y at z = 0, normal +z", parameterInfo<PlacementParameters>()}, readDisk},
             {{"mesh", "triangles in the dictionary itself, as generators write them", parameterInfo<MeshParameters>()},
              readInlineMesh},
             {{"obj", "triangle mesh from a Wavefront OBJ file", parameterInfo<ObjParameters>()}, readObjShape},

@@ -107,6 +107,10 @@ double linearDeterminant(const Matrix4& m) {
     return axis(m, 0).dot(axis(m, 1).cross(axis(m, 2)));
 }
 
+std::array<Vec3f, 3> axesOf(const Matrix4& m) {
+    return {Vec3f(axis(m, 0).normalized()), Vec3f(axis(m, 1).normalized()), Vec3f(axis(m, 2).normalized())};
+}
+
 std::optional<double> uniformScale(const Matrix4& m) {
     constexpr double kTolerance = 1e-4;
     const Vec3d x = axis(m, 0), y = axis(m, 1), z = axis(m, 2);

@@ -5,6 +5,9 @@
 #include "core/base/vector.h"
 #include "core/config/json.h"
 
+#include <array>
+#include <optional>
+
 namespace ulam {
 
 /// Coordinates beyond this are refused: products of edges overflow in single precision.
@@ -19,6 +22,9 @@ Vec3d parseVector(const JsonNode& node);
 
 /// The factor of a transformation that keeps angles (negative when it mirrors); nothing for any other.
 std::optional<double> uniformScale(const Matrix4& m);
+
+/// Directions of the object's axes in the world, for a transformation that keeps angles.
+std::array<Vec3f, 3> axesOf(const Matrix4& m);
 
 double linearDeterminant(const Matrix4& m);
 

@@ -16,7 +16,7 @@ double tangentX(const Perspective::Parameters& p, double width, double height) {
     return (p.fovAxis == "larger") == wide || width == height ? t : t * aspect;
 }
 
-Vec3f axis(const Matrix4& m, const Imath::V3d& direction) {
+Vec3f axisOf(const Matrix4& m, const Imath::V3d& direction) {
     Imath::V3d out;
     m.multDirMatrix(direction, out);
     return Vec3f(out.normalized());
@@ -24,12 +24,15 @@ Vec3f axis(const Matrix4& m, const Imath::V3d& direction) {
 
 }  // namespace
 
-Perspective::Perspective(const Parameters& p, const Matrix4& toWorld, const FilmSize& film, float margin)
+Perspective::Perspective(const Parameters& p, const Aperture& aperture, const Matrix4& toWorld, const FilmSize& film, float margin)
     : film_(film),
       window_({-margin, -margin}, {film.cropWidth + margin, film.cropHeight + margin}),
-      unitX_(axis(toWorld, {1, 0, 0})),
-      unitY_(axis(toWorld, {0, 1, 0})),
-      unitZ_(axis(toWorld, {0, 0, 1})) {
+      unitX_(axisOf(toWorld, {1, 0, 0})),
+      unitY_(axisOf(toWorld, {0, 1, 0})),
+      unitZ_(axisOf(toWorld, {0, 0, 1})),
+      apertureRadius_(float(aperture.radius)),
+      inverseFocus_(float(1 / aperture.focusDistance)),
+      positionPdf_(aperture.radius > 0 ? 1 / (kPi * apertureRadius_ * apertureRadius_) : 1) {
     Imath::V3d origin;
     toWorld.multVecMatrix(Imath::V3d(0, 0, 0), origin);
     position_ = Vec3f(origin);
@@ -39,7 +42,7 @@ Perspective::Perspective(const Parameters& p, const Matrix4& toWorld, const Film
     x0_ = t + dx_ * (film.cropOffsetX + p.principalPointOffsetX * film.width);
     y0_ = t * film.height / film.width + dy_ * (film.cropOffsetY + p.principalPointOffsetY * film.height);
     windowArea_ = double(window_.max.x - window_.min.x) * (window_.max.y - window_.min.y);
-    importanceOnAxis_ = 1 / (windowArea_ * dx_ * dy_);
+    pdfOnAxis_ = 1 / (windowArea_ * dx_ * dy_);
 }
 
 }  // namespace ulam

@@ -11,7 +11,7 @@
 namespace ulam {
 
 inline double shadingCosine(const Vertex& v, const Vec3f& w) {
-    return v.onSurface() ? std::abs(double(dot(v.shadingNormal, w))) : 1;
+    return v.hasNormal() ? std::abs(double(dot(v.shadingNormal, w))) : 1;
 }
 
 /// How far log densities and log f of a path may be from each other, walked and recomputed.
@@ -20,20 +20,23 @@ inline double explainedLogError(const Tracing& tracing, const Path& path, const 
     std::array<double, kMaxVertices> angle;
     for (int i = 0; i < path.length(); ++i) {
         const Edge& e = factors.edge[size_t(i)];
-        const bool endless = path[i].kind == Vertex::Kind::Infinite;
+        const bool endless = path[i].atInfinity();
         angle[size_t(i)] = tracing.offsetLength() * (endless ? 0 : std::sqrt(e.inverseD2)) + 4e-7;
         for (const double c :
              {e.cosA, e.cosB, shadingCosine(path[i], e.direction), shadingCosine(path[i + 1], e.direction)})
             sum += angle[size_t(i)] / c;
     }
+    const auto explain = [&](const FactorRanges& ranges, double error) {
+        // The range that the reference finds for a cosine error of kCosineError, taken to the actual one.
+        const double scale = std::max(1.0, error / kCosineError);
+        for (const Range& range : ranges)
+            if (range.high > 0) sum += scale * std::log(range.high / std::max(range.low, 1e-300));
+    };
+    explain(emissionReference(tracing.scene(), path[0], exactDirection(path[0], path[1])), angle[0]);
     for (int i = 1; i < path.length(); ++i) {
         if (!isDelta(path[i].lobe)) continue;
-        // The range that the reference finds for a cosine error of kCosineError, taken to the actual one.
-        const FactorRanges r = scatteringReference(tracing.scene(), path[i], exactDirection(path[i], path[i - 1]),
-                                                   exactDirection(path[i], path[i + 1]));
-        const double scale = std::max(1.0, (angle[size_t(i - 1)] + angle[size_t(i)]) / kCosineError);
-        for (const Range& range : r)
-            if (range.high > 0) sum += scale * std::log(range.high / std::max(range.low, 1e-300));
+        explain(scatteringReference(tracing.scene(), path[i], exactDirection(path[i], path[i - 1]), exactDirection(path[i], path[i + 1])),
+                angle[size_t(i - 1)] + angle[size_t(i)]);
     }
     // Relative errors, at worst all on one side.
     return sum < 1 ? -std::log1p(-sum) : std::numeric_limits<double>::infinity();

@@ -11,7 +11,9 @@ namespace {
 
 /// The scene with every kind of light, and the index of the emitter that belongs to a shape or is of a type.
 struct Lights {
-    Scene scene = buildScene(pathScene("many_lights").dictionary);
+    explicit Lights(const std::string& name = "many_lights") : scene(buildScene(pathScene(name).dictionary)) {}
+
+    Scene scene;
 
     uint32_t of(const std::string& shape) const {
         for (const Shape& s : scene.shapes)
@@ -141,7 +143,7 @@ TEST_CASE("the sky: directions are uniform, rays uniform over the scene's disc")
 }
 
 TEST_CASE("next-event samples follow their density, emitters are chosen by their probabilities") {
-    const Lights lights;
+    const Lights lights(GENERATE("many_lights", "thin_lens", "sun_and_sky"));
     const Scene& scene = lights.scene;
     Vertex from{};
     from.kind = Vertex::Kind::Surface;
@@ -165,7 +167,7 @@ TEST_CASE("next-event samples follow their density, emitters are chosen by their
 }
 
 TEST_CASE("emitters: the numbers of a position or direction give it again") {
-    const Lights lights;
+    const Lights lights(GENERATE("many_lights", "thin_lens", "sun_and_sky"));
     const Scene& scene = lights.scene;
     Random random(makeKey(31), 0, 0);
     Vertex from{};
@@ -208,36 +210,136 @@ TEST_CASE("the sensor's directions follow its importance, which is normalised, a
                  "rfilter": {"type": "tent", "radius": 2}}}})";
     const Scene scene = buildScene(Json::parse(text), Json::object());
     const Perspective& sensor = *scene.sensor;
+    const Vertex eye = sensor.samplePosition({});
     const double pixel = 2.0 / 40, margin = (sensor.window().max.x - sensor.width()) / 2.0 * 2 * pixel;
     const double x = 10 * pixel + margin, y = 5 * pixel + margin;
     CHECK(margin > 0);
     CHECK_FIT(misfit(
         {-x, x, -y, y, 24, 14},
         [&](Random& r) {
-            const Vec3f w = sensor.direction(sensor.sampleRaster(r.nextBlock()));
+            const Vec3f w = sensor.direction(eye, sensor.sampleRaster(r.nextBlock()));
             return Sample2{double(w.x) / w.z, double(w.y) / w.z};
         },
         [&](double px, double py) {
             const double c = 1 / std::sqrt(1 + px * px + py * py);
-            return sensor.directionPdf(Vec3f(float(px * c), float(py * c), float(c))) * c * c * c;
+            return sensor.respond(eye, Vec3f(float(px * c), float(py * c), float(c))).pdf * c * c * c;
         },
         40));
     Random random(makeKey(41), 0, 0);
     for (int i = 0; i < 100'000; ++i) {
         const Block u = random.nextBlock();
         const Vec2f raster = sensor.sampleRaster(u);
-        const auto again = sensor.raster(sensor.direction(raster));
+        const auto again = sensor.respond(eye, sensor.direction(eye, raster));
         // At the window's border rounding may put the direction outside.
-        if (again)
-            REQUIRE((*again - raster).length() < 1e-4f);
+        if (again.importance > 0)
+            REQUIRE((again.raster - raster).length() < 1e-4f);
         else
             REQUIRE((std::abs(std::abs(raster.x - 10) - 12) < 1e-3f || std::abs(std::abs(raster.y - 5) - 7) < 1e-3f));
         Block v = random.nextBlock();
         sensor.invertRaster(raster, v);
         REQUIRE((sensor.sampleRaster(v) - raster).length() < 1e-5f);
     }
-    CHECK_FALSE(sensor.raster({0, 0, -1}));
-    CHECK(sensor.importance({0, 0, -1}) == 0);
+    CHECK(sensor.respond(eye, {0, 0, -1}).importance == 0);
+}
+
+TEST_CASE("a thin lens: its focal plane is sharp, its importance normalised, its numbers are found again") {
+    const char* text = R"({"type": "scene", "light": {"type": "point"}, "sensor": {"type": "thinlens", "fov": 60, "aperture_radius": 0.25, "focus_distance": 4,
+        "to_world": [{"type": "lookat", "origin": [1, 2, 3], "target": [0, 1, 7], "up": [0.1, 1, 0]}],
+        "film": {"type": "hdrfilm", "width": 40, "height": 30, "rfilter": {"type": "box"}}}})";
+    const Scene scene = buildScene(Json::parse(text), Json::object());
+    const Perspective& sensor = *scene.sensor;
+    Random random(makeKey(42), 0, 0);
+    double norm = 0;
+    constexpr int kSamples = 100'000;
+    for (int i = 0; i < kSamples; ++i) {
+        const Block u = random.nextBlock();
+        const Vertex lens = sensor.samplePosition(u), other = sensor.samplePosition(random.nextBlock());
+        REQUIRE(lens.kind == Vertex::Kind::Lens);
+        REQUIRE(length(lens.position - sensor.position()) <= 0.25f + 1e-6f);
+        Block found = random.nextBlock();
+        sensor.invertPosition(lens, found);
+        REQUIRE(length(sensor.samplePosition(found).position - lens.position) < 1e-5f);
+
+        const Vec2f raster = sensor.sampleRaster(u);
+        const Vec3f w = sensor.direction(lens, raster), v = sensor.direction(other, raster);
+        const auto sharp = [&](const Vertex& x, const Vec3f& d) { return x.position + d * (4 / dot(d, sensor.axis())); };
+        REQUIRE(length(sharp(lens, w) - sharp(other, v)) < 2e-5f);
+        const auto response = sensor.respond(lens, w);
+        if (!(response.importance > 0)) continue;  // rounded over the border
+        REQUIRE((response.raster - raster).length() < 1e-3f);
+        // ∫ W_e |cosθ| dω dA by its own samples.
+        norm += response.importance * dot(w, sensor.axis()) / (response.pdf * sensor.positionPdf(lens) * kSamples);
+    }
+    CHECK(norm == Approx(1).epsilon(1e-4));
+    // The density of directions, against the image plane at distance 1 seen from a point off the axis.
+    const Vertex lens = sensor.lensPoint({0.6f, -0.5f});
+    const Frame frame(sensor.axis());
+    CHECK_FIT(misfit(
+        {-0.9, 0.9, -0.9, 0.9, 24, 24},
+        [&](Random& r) -> std::optional<Sample2> {
+            const Vec3f w = frame.toLocal(sensor.direction(lens, sensor.sampleRaster(r.nextBlock())));
+            return Sample2{double(w.x) / w.z, double(w.y) / w.z};
+        },
+        [&](double px, double py) {
+            const double c = 1 / std::sqrt(1 + px * px + py * py);
+            return sensor.respond(lens, frame.toWorld(Vec3f(float(px * c), float(py * c), float(c)))).pdf * c * c * c;
+        },
+        43));
+}
+
+TEST_CASE("spot: full intensity in the beam, a linear ramp, nothing outside; power and cone") {
+    SpotEmitter::Parameters p;
+    p.intensity = Spectrum(2, 4, 8), p.cutoffAngle = 40, p.beamWidth = 25;
+    const SpotEmitter spot(p, {1, 2, 3}, normalize(Vec3f(1, -1, 0.5f)));
+    const EmissionContext none{};
+    const Vertex x0 = spot.samplePosition(none, {});
+    const auto along = [&](double degrees) {
+        const double t = degrees * kPi / 180;
+        return spot.frame.toWorld({float(std::sin(t)), 0, float(std::cos(t))});
+    };
+    for (const auto& [degrees, share] : {std::pair(0.0, 1.0), {24.0, 1.0}, {30.0, 10.0 / 15}, {39.0, 1.0 / 15}, {41.0, 0.0}, {170.0, 0.0}}) {
+        CHECK(spot.radiance(none, x0, along(degrees)).y == Approx(4 * share).margin(1e-5));
+        CHECK((spot.directionPdf(none, x0, along(degrees)) > 0) == (share > 0));
+    }
+    double integral = 0;
+    constexpr int kSteps = 200'000;
+    for (int i = 0; i < kSteps; ++i) {
+        const double degrees = 40 * (i + 0.5) / kSteps;
+        integral += luminance(spot.radiance(none, x0, along(degrees))) * std::sin(degrees * kPi / 180) * 2 * kPi * (40 * kPi / 180 / kSteps);
+    }
+    CHECK(spot.power(none) == Approx(integral).epsilon(1e-5));
+    CHECK_FIT(misfit(
+        kDirections, [&](Random& r) { return azimuthAndZ(spot.sampleDirection(none, x0, r.nextBlock()).direction); },
+        [&](double phi, double z) { return spot.directionPdf(none, x0, directionOf(phi, z)); }, 44));
+}
+
+TEST_CASE("an environment map: directions follow their density, which follows the radiance") {
+    Image picture(6, 4);
+    Random random(makeKey(45), 0, 0);
+    for (Rgb& pixel : picture.pixels) pixel = Rgb(float(random() * random()), float(random()), 0.5f);
+    picture.at(2, 1) = Rgb(30, 30, 20);
+    const Axes axes{normalize(Vec3f(1, 0.2f, 0)), Vec3f(0, 0, 0), Vec3f(0, 0, 0)};
+    const Frame frame(axes[0]);
+    const EnvironmentMap map(picture, 0.5, {frame.s, frame.t, frame.n});
+    CHECK_FIT(misfit(
+        kDirections, [&](Random& r) { const double u = r(); return azimuthAndZ(map.sample(u, r())); },
+        [&](double phi, double z) { return map.pdf(directionOf(phi, z)); }, 46));
+    double integral = 0;
+    Vec3f brightest;
+    constexpr int kSamples = 200'000;
+    for (int i = 0; i < kSamples; ++i) {
+        const double u = random(), v = random();
+        const Vec3f w = map.sample(u, v);
+        const Sample2 again = map.invert(w);
+        REQUIRE(length(map.sample(again.u, again.v) - w) < 1e-5f);
+        integral += luminance(map.radiance(w)) / map.pdf(w) / kSamples;
+    }
+    // The mean of a cell's corners is its mean luminance but for the change of sinθ across a cell.
+    CHECK(map.totalLuminance() == Approx(integral).epsilon(0.05));
+    // Row 1 of 4 is at 60° from +y, column 2 of 6 at u = 2.5 / 6.
+    const double phi = 2 * kPi * 2.5 / 6, sine = std::sin(kPi / 3);
+    const Vec3f local(float(sine * std::sin(phi)), 0.5f, float(-sine * std::cos(phi)));
+    CHECK(map.radiance(frame.s * local.x + frame.t * local.y + frame.n * local.z).x == Approx(15).epsilon(1e-4));
 }
 
 TEST_CASE("offsets of camera samples are distributed as the filter, in both directions") {

@@ -30,8 +30,8 @@ const Material& materialOf(const Scene& scene, const std::string& id) {
     return scene.materials[0];
 }
 
-double greyOf(const Bsdf& bsdf) {
-    return std::get<Diffuse>(bsdf).reflectance.x;
+double greyOf(const Coating& coating) {
+    return std::get<Diffuse>(coating.bsdf).reflectance.x;
 }
 
 }  // namespace
@@ -127,9 +127,9 @@ TEST_CASE("materials: defaults, references, two sides") {
     CHECK(greyOf(materialOf(scene, "lamp").front) == 0);
     CHECK(&materialOf(scene, "a") == &scene.materials[scene.shapes[2].material]);
     CHECK(greyOf(materialOf(scene, "a").front) == 0.9);
-    CHECK(std::get<Dielectric>(materialOf(scene, "b").front).ior == Approx(2.419 / 1.25));
+    CHECK(std::get<Dielectric>(materialOf(scene, "b").front.bsdf).ior == Approx(2.419 / 1.25));
     CHECK(greyOf(*materialOf(scene, "c").back) == 0.9);
-    CHECK(std::holds_alternative<Conductor>(materialOf(scene, "d").front));
+    CHECK(std::holds_alternative<Conductor>(materialOf(scene, "d").front.bsdf));
     CHECK(greyOf(*materialOf(scene, "d").back) == 0.25);
     const auto& lamp = std::get<AreaEmitter>(scene.emitters[scene.shapes[1].emitter]);
     CHECK(lamp.shape == 1);
@@ -138,7 +138,7 @@ TEST_CASE("materials: defaults, references, two sides") {
 
 TEST_CASE("dielectric: the defaults are glass in air") {
     const Scene scene = loadText(sceneWith(R"("s": {"type": "sphere", "bsdf": {"type": "dielectric"}})"));
-    CHECK(std::get<Dielectric>(materialOf(scene, "s").front).ior == Approx(1.5046 / 1.000277));
+    CHECK(std::get<Dielectric>(materialOf(scene, "s").front.bsdf).ior == Approx(1.5046 / 1.000277));
 }
 
 TEST_CASE("emitters: point and constant") {
@@ -184,16 +184,16 @@ TEST_CASE("the camera looks along +z, its image has +x on the left and +y up") {
     const Scene scene =
         loadText(R"({"type": "scene", "light": {"type": "point"}, "sensor": {"type": "perspective", "fov": 90,
         "film": {"type": "hdrfilm", "width": 100, "height": 100, "rfilter": {"type": "box"}}}})");
-    CHECK(near(scene.sensor->direction({50, 50}), {0, 0, 1}));
-    CHECK(near(scene.sensor->direction({0, 50}), normalize(Vec3f(1, 0, 1))));
-    CHECK(near(scene.sensor->direction({50, 0}), normalize(Vec3f(0, 1, 1))));
+    CHECK(near(scene.sensor->direction(scene.sensor->samplePosition({}), {50, 50}), {0, 0, 1}));
+    CHECK(near(scene.sensor->direction(scene.sensor->samplePosition({}), {0, 50}), normalize(Vec3f(1, 0, 1))));
+    CHECK(near(scene.sensor->direction(scene.sensor->samplePosition({}), {50, 0}), normalize(Vec3f(0, 1, 1))));
 }
 
 TEST_CASE("without fov the field of view is that of a 50 mm lens on 35 mm film, along the diagonal") {
     const auto corner = [](const std::string& parameters) {
         const Scene scene = loadText(R"({"type": "scene", "light": {"type": "point"}, "sensor": {"type": "perspective", )" +
                                      parameters + R"("film": {"type": "hdrfilm", "width": 36, "height": 24}}})");
-        return double(scene.sensor->direction({0, 0}).z);
+        return double(scene.sensor->direction(scene.sensor->samplePosition({}), {0, 0}).z);
     };
     CHECK(std::abs(corner("") - 50 / std::hypot(50, 18, 12)) < 1e-6);
     CHECK(std::abs(corner(R"("focal_length": "35mm", )") - 35 / std::hypot(35, 18, 12)) < 1e-6);

@@ -45,7 +45,7 @@ inline Estimate directLight(const Scene& scene, const Vec2f& rasterMin, const Ve
     for (int i = 0; i < samples; ++i) {
         const Vec2f raster(float(rasterMin.x + random() * (rasterMax.x - rasterMin.x)),
                            float(rasterMin.y + random() * (rasterMax.y - rasterMin.y)));
-        const Vertex seen = firstHit(scene, eye, scene.sensor->direction(raster));
+        const Vertex seen = firstHit(scene, eye, scene.sensor->direction(scene.sensor->samplePosition({}), raster));
         const Vertex lit = light.samplePoint(lightIndex, random(), random());
         const Vec3d segment = Vec3d(lit.position) - Vec3d(seen.position);
         const double d2 = segment.dot(segment),

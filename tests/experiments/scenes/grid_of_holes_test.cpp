@@ -79,7 +79,7 @@ TEST_CASE("grid_of_holes: light passes through the holes and nowhere else, and f
         for (int row = 0; row < n; ++row)
             for (int column = 0; column < n; ++column) {
                 const Vec2f raster((column + 0.5f) * width / n, (row + 0.5f) * width / n);
-                const Vertex seen = firstHit(scene, eye, scene.sensor->direction(raster));
+                const Vertex seen = firstHit(scene, eye, scene.sensor->direction(scene.sensor->samplePosition({}), raster));
                 REQUIRE(scene.shapes[seen.shape].id == "receiver");
                 const Vertex lit = firstHit(scene, seen.position, {0, 0, -1});
                 REQUIRE(scene.shapes[lit.shape].id == "light");
@@ -103,7 +103,7 @@ TEST_CASE("grid_of_holes: the image just holds the unit square of the receiver")
         const float w = float(scene.sensor->width());
         for (const auto& [raster, corner] :
              {std::pair(Vec2f(0, 0), Vec3f(0.5f, 0.5f, 0.3f)), std::pair(Vec2f(w, w), Vec3f(-0.5f, -0.5f, 0.3f))})
-            CHECK(length(firstHit(scene, eye, scene.sensor->direction(raster)).position - corner) < 1e-5f);
+            CHECK(length(firstHit(scene, eye, scene.sensor->direction(scene.sensor->samplePosition({}), raster)).position - corner) < 1e-5f);
         // Not in a hole's axis.
         CHECK(scene.shapes[firstHit(scene, eye, {0, 0, -1}).shape].id == "plate");
     }

@@ -40,7 +40,7 @@ TEST_CASE("furnace: emission and reflections add up to 1") {
         const Scene scene = description.build();
         const Vec3f eye = scene.sensor->samplePosition({}).position;
         CHECK(length(eye) < 1);
-        const Vertex seen = firstHit(scene, eye, scene.sensor->direction({3, 3}));
+        const Vertex seen = firstHit(scene, eye, scene.sensor->direction(scene.sensor->samplePosition({}), {3, 3}));
         CHECK(dot(seen.normal, seen.position) < 0);
     }
 }
@@ -105,7 +105,7 @@ TEST_CASE("cornell_box: every wall and block faces the room") {
             REQUIRE(dot(v.normal, direction) < 0);
         }
         const Vec3f eye = scene.sensor->samplePosition({}).position;
-        CHECK(scene.shapes[firstHit(scene, eye, scene.sensor->direction({10, 128})).shape].id == "red_wall");
-        CHECK(scene.shapes[firstHit(scene, eye, scene.sensor->direction({246, 128})).shape].id == "green_wall");
+        CHECK(scene.shapes[firstHit(scene, eye, scene.sensor->direction(scene.sensor->samplePosition({}), {10, 128})).shape].id == "red_wall");
+        CHECK(scene.shapes[firstHit(scene, eye, scene.sensor->direction(scene.sensor->samplePosition({}), {246, 128})).shape].id == "green_wall");
     }
 }
