@@ -6,12 +6,12 @@ EnvironmentMap::EnvironmentMap(Image image, double scale, const std::array<Vec3f
     for (Rgb& p : image_.pixels) p *= float(scale);
     std::vector<double> rows, cells(size_t(image_.width));
     for (int j = 0; j + 1 < image_.height; ++j) {
+        // ∫ over the cell of what grows linearly with θ from the upper row to the lower one, and of the rest.
+        const double step = kPi / (image_.height - 1), all = cellSolidAngle(j);
+        const double lower = 2 * kPi / image_.width * ((std::sin((j + 1) * step) - std::sin(j * step)) / step - cosineOfRow(j + 1));
+        const auto mean = [&](int row, int i) { return luminance(Spectrum(texel(row, i)) + Spectrum(texel(row, i + 1))) / 2; };
         double sum = 0;
-        for (int i = 0; i < image_.width; ++i) {
-            double corners = 0;
-            for (const Rgb* p : {&texel(j, i), &texel(j, i + 1), &texel(j + 1, i), &texel(j + 1, i + 1)}) corners += luminance(Spectrum(*p));
-            sum += cells[size_t(i)] = corners / 4 * cellSolidAngle(j);
-        }
+        for (int i = 0; i < image_.width; ++i) sum += cells[size_t(i)] = mean(j, i) * (all - lower) + mean(j + 1, i) * lower;
         rows.push_back(sum);
         if (!(sum > 0)) std::fill(cells.begin(), cells.end(), 1.0);  // a dark row is never chosen
         columns_.emplace_back(cells);

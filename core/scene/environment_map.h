@@ -17,11 +17,10 @@ public:
 
     /// From a unit direction of the world.
     Spectrum radiance(const Vec3f& w) const;
-    /// ∫ luminance dω, up to the bilinear interpolation's change within a cell; 0: no light.
+    /// ∫ luminance dω; 0: no light.
     double totalLuminance() const { return rows_.total(); }
 
-    /// Chooses a cell between four texels by their mean luminance times its solid angle, then a direction in it, uniform
-    /// per solid angle.
+    /// Chooses a cell between four texels by its ∫ luminance dω, then a direction in it, uniform per solid angle.
     Vec3f sample(double u, double v) const;
     double pdf(const Vec3f& w) const;
     Sample2 invert(const Vec3f& w) const;

@@ -109,6 +109,20 @@ Json outdoors() {
     return scene;
 }
 
+/// Depth of field; glass and a mirror between the camera and what a spot and a lamp light; a cut-out sheet.
+Json throughLens() {
+    Json scene = specularBox();
+    scene["sensor"]["type"] = "thinlens";
+    scene["sensor"]["aperture_radius"] = 0.2;
+    scene["sensor"]["focus_distance"] = 3.2;
+    scene["spot"] = {{"type", "spot"}, {"intensity", {3, 3, 2}}, {"cutoff_angle", 50}};
+    scene["spot"]["to_world"] = Json::array({{{"type", "lookat"}, {"origin", {0.6, 0.8, 0.8}}, {"target", {-0.3, -0.8, 0}}, {"up", {0, 0, 1}}}});
+    scene["sheet"] = shape("rectangle", {scale(0.3, 0.3, 1), rotate('y', 25), translate(0.1, 0.1, 0.6)},
+                           {{"type", "mask"}, {"opacity", {{"type", "checkerboard"}, {"color0", 0.3}, {"color1", 0.7}}},
+                            {"inside", {{"type", "twosided"}, {"inside", diffuse(0.7, 0.6, 0.3)}}}});
+    return scene;
+}
+
 std::unique_ptr<const AuditScene> make(const char* name, const char* holds, Json dictionary) {
     Scene scene = SceneDescription::fromNode(JsonNode(dictionary), ".").build();
     return std::make_unique<const AuditScene>(name, holds, std::move(dictionary), std::move(scene), PathLimits{6, 3});
@@ -119,6 +133,7 @@ std::vector<std::unique_ptr<const AuditScene>> makeAll() {
     scenes.push_back(make("diffuse", "box with an area light and a block", diffuseBox()));
     scenes.push_back(make("specular", "the box with a glass sphere and a mirror", specularBox()));
     scenes.push_back(make("outdoor", "point light, environment, smooth normals", outdoors()));
+    scenes.push_back(make("lens", "the specular box through a thin lens, with a spot and a cut-out sheet", throughLens()));
     return scenes;
 }
 

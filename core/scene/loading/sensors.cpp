@@ -90,8 +90,9 @@ std::vector<std::string> noteUnknownOptions(const JsonNode& film, const Paramete
     std::vector<std::string> names, keys;
     for (const auto& parameter : known.parameters()) names.push_back(parameter.name);
     for (const auto& [key, value] : film.members()) {
+        if (std::find(names.begin(), names.end(), key) != names.end()) continue;
         keys.push_back(key);
-        if (key == "type" || key == "id" || std::find(names.begin(), names.end(), key) != names.end()) continue;
+        if (key == "type" || key == "id") continue;
         const std::string hint = didYouMean(key, names);
         context.warnings.push_back(fmt::format("film option {} has no effect, at {}{}{}", inQuotes(key), value.where(),
                                                hint.empty() ? "" : "; ", hint));

@@ -4,6 +4,7 @@
 
 #include "core/image/image.h"
 
+#include <array>
 #include <memory>
 #include <string>
 

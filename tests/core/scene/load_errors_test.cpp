@@ -1,6 +1,7 @@
 // Mistakes in scenes: each gives an error that names place and remedy.
 
 #include "core/base/random.h"
+#include "core/image/image_io.h"
 #include "core/scene/plugins.h"
 #include "tests/core/scene/load_text.h"
 
@@ -26,12 +27,57 @@ TEST_CASE("unknown names are answered with the nearest one") {
     expect(R"("e": {"type": "constan"})", "/e", "constant");
 }
 
-TEST_CASE("textures are refused by name where only colours are supported") {
-    const std::string message = errorOf(sceneWith(
-        R"("s": {"type": "cube", "bsdf": {"type": "diffuse", "reflectance": {"type": "bitmap", "filename": "a.png"}}})"));
-    CHECK(mentions(message, "bitmap"));
-    CHECK(mentions(message, "/s/bsdf/reflectance"));
-    CHECK(mentions(message, "\"rgb\""));
+TEST_CASE("textures: missing, damaged, of another format, out of range, or where none may stand") {
+    const SceneFolder folder("texture_errors");
+    const auto picture = [&](const std::string& name, Rgb value) { writeExr((folder.path / name).string(), Image(4, 4, value)); };
+    picture("bright.exr", Rgb(1.5f)), picture("negative.exr", Rgb(-0.5f)), picture("black.exr", Rgb(0));
+    folder.write("text.png", "no picture");
+    folder.write("a.bmp", "no picture");
+    folder.write("nan.pfm", std::string("PF\n1 1\n-1.0\n") + std::string("\0\0\xc0\x7f", 4) + std::string(8, '\0'));
+    const auto of = [&](const std::string& texture, ExitCode code = ExitCode::InvalidConfig) {
+        return errorOf(sceneWith(R"("s": {"type": "cube", "bsdf": {"type": "diffuse", "reflectance": )" + texture + "}}"), code, folder.path);
+    };
+    const auto file = [&](const std::string& name, ExitCode code = ExitCode::InvalidConfig) {
+        return of(R"({"type": "bitmap", "filename": ")" + name + "\"}", code);
+    };
+    for (const char* name : {"text.png", "a.bmp", "nan.pfm", "../black.exr"}) CHECK(mentions(file(name), "/s/bsdf/reflectance/filename"));
+    CHECK(mentions(file("none.png", ExitCode::InputMissing), "/s/bsdf/reflectance/filename"));
+    CHECK(mentions(file("bright.exr"), "at most 1"));
+    CHECK(mentions(file("negative.exr"), "below 0"));
+    CHECK(mentions(of(R"({"type": "bitmap"})"), "filename"));
+    CHECK(mentions(of(R"({"type": "bitmat", "filename": "black.exr"})"), "bitmap"));
+    CHECK(mentions(of(R"({"type": "checkerboard", "color2": 1})"), "color1"));
+    CHECK(mentions(of(R"({"type": "checkerboard", "to_uv": [{"type": "scale", "value": 0}]})"), "not invertible"));
+    CHECK(mentions(of(R"({"type": "ref", "id": "light"})"), "no texture"));
+    CHECK(mentions(errorOf(sceneWith(R"("p": {"type": "point", "intensity": {"type": "checkerboard"}})")), "checkerboard"));
+    CHECK(mentions(errorOf(sceneWith(R"("s": {"type": "cube", "b": {"type": "dielectric", "int_ior": {"type": "checkerboard"}}})")), "takes no texture"));
+    const auto sky = [&](const std::string& parameters) {
+        return errorOf(sceneWith(R"("sky": {"type": "envmap", )" + parameters + "}"), ExitCode::InvalidConfig, folder.path);
+    };
+    CHECK(mentions(sky(R"("filename": "black.exr")"), "no light"));
+    CHECK(mentions(sky(R"("filename": "bright.exr", "scale": 0)"), "no light"));
+    CHECK(mentions(sky(R"("filename": "negative.exr")"), "negative"));
+    CHECK(mentions(sky(R"("filename": "bright.exr", "to_world": [{"type": "scale", "value": [1,2,1]}])"), "keep angles"));
+    CHECK(mentions(sky(R"("scale": 1)"), "filename"));
+}
+
+TEST_CASE("lights, lenses and shapes that make no sense") {
+    CHECK(mentions(errorOf(sceneWith(R"("s": {"type": "spot", "cutoff_angle": 0})")), "/s/cutoff_angle"));
+    CHECK(mentions(errorOf(sceneWith(R"("s": {"type": "spot", "cutoff_angle": 10, "beam_width": 20})")), "wider than"));
+    CHECK(mentions(errorOf(sceneWith(R"("d": {"type": "directional", "direction": [0,0,0]})")), "longer than 0"));
+    CHECK(mentions(errorOf(sceneWith(R"("d": {"type": "directional", "direction": [0,0,1], "to_world": [{"type": "scale", "value": 2}]})")), "either"));
+    const auto lens = [](const std::string& parameters) {
+        return errorOf(R"({"type": "scene", "light": {"type": "point"}, "sensor": {"type": "thinlens")" + parameters + "}}");
+    };
+    CHECK(mentions(lens(""), "aperture_radius"));
+    CHECK(mentions(lens(R"(, "aperture_radius": 0.1)"), "focus_distance"));
+    CHECK(mentions(lens(R"(, "aperture_radius": 0.1, "focus_distance": 0)"), "/sensor/focus_distance"));
+    CHECK(mentions(lens(R"(, "aperture_radius": 0, "focus_distance": 1)"), "perspective"));
+    CHECK(mentions(errorOf(sceneWith(R"("c": {"type": "cylinder", "p0": [1,1,1], "p1": [1,1,1]})")), "no length"));
+    CHECK(mentions(errorOf(sceneWith(R"("c": {"type": "cylinder", "to_world": [{"type": "scale", "value": [1,2,1]}]})")), "round"));
+    CHECK(mentions(errorOf(sceneWith(R"("m": {"type": "mask", "opacity": 0.5})")), "one BSDF"));
+    CHECK(mentions(errorOf(sceneWith(R"("m": {"type": "mask", "opacity": 2, "b": {"type": "diffuse"}})")), "/m/opacity"));
+    CHECK(mentions(errorOf(sceneWith(R"("t": {"type": "twosided", "b": {"type": "mask", "c": {"type": "diffuse"}}})")), "transmits"));
 }
 
 TEST_CASE("values out of range or of the wrong type") {
@@ -126,7 +172,7 @@ TEST_CASE("scenes that cannot be rendered") {
         "no light"));
     CHECK(mentions(errorOf(sceneWith(R"("b": {"type": "perspective"})")), "exactly one sensor"));
     CHECK(mentions(errorOf(sceneWith(R"("a": {"type": "constant"}, "b": {"type": "constant"})")),
-                   "at most one constant"));
+                   "at most one environment"));
     CHECK(mentions(errorOf(sceneWith(R"("a": {"type": "area"})")), "nested in a shape"));
     CHECK(mentions(errorOf(sceneWith(R"("s": {"type": "cube", "e": {"type": "point"}})")), "cannot be nested"));
     CHECK(mentions(errorOf(sceneWith(R"("s": {"type": "cube", "e": {"type": "area"}, "f": {"type": "area"}})")),
