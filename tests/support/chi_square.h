@@ -12,8 +12,8 @@
 
 namespace ulam {
 
-/// p-values below this reject: level 1e-6 for a suite of at most 100 tests (Šidák).
-inline constexpr double kSuiteTests = 100;
+/// p-values below this reject: level 1e-6 for a suite of at most 400 tests (Šidák).
+inline constexpr double kSuiteTests = 400;
 double suiteThreshold();
 
 struct Domain {

@@ -2,6 +2,7 @@
 // The smallest dual number: a value and its derivative with respect to one parameter.
 
 #include <cmath>
+#include <numbers>
 
 namespace ulam {
 
@@ -11,6 +12,8 @@ struct Dual {
     constexpr Dual() = default;
     constexpr Dual(double value) : v(value) {}
     constexpr Dual(double value, double derivative) : v(value), d(derivative) {}
+
+    explicit operator double() const { return v; }
 
     Dual operator-() const { return {-v, -d}; }
     friend Dual operator+(Dual a, Dual b) { return {a.v + b.v, a.d + b.d}; }
@@ -24,6 +27,15 @@ struct Dual {
 
 inline Dual sqrt(Dual a) {
     return {std::sqrt(a.v), a.d / (2 * std::sqrt(a.v))};
+}
+inline Dual exp(Dual a) {
+    return {std::exp(a.v), a.d * std::exp(a.v)};
+}
+inline Dual log(Dual a) {
+    return {std::log(a.v), a.d / a.v};
+}
+inline Dual erf(Dual a) {
+    return {std::erf(a.v), a.d * 2 * std::numbers::inv_sqrtpi * std::exp(-a.v * a.v)};
 }
 inline Dual abs(Dual a) {
     return a.v < 0 ? -a : a;

@@ -33,9 +33,7 @@ struct Conductor {
     template <class T>
     Color<T> eval(const Direction<T>& toLight, const Direction<T>& toCamera, Lobe lobe) const {
         if (lobe != Lobe::DeltaReflection || !(toLight.z > 0 && toCamera.z > 0)) return Color<T>(T(0));
-        return {specularReflectance.x * fresnelConductor(toLight.z, eta.x, k.x),
-                specularReflectance.y * fresnelConductor(toLight.z, eta.y, k.y),
-                specularReflectance.z * fresnelConductor(toLight.z, eta.z, k.z)};
+        return scaled(specularReflectance, T(1)) * fresnelConductor(toLight.z, eta, k);
     }
 
     template <class T>

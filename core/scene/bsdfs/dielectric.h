@@ -55,8 +55,9 @@ struct Dielectric {
     }
 
     std::optional<ScatterSample> sampleLobe(const Vec3f& from, Lobe lobe, const Block&) const {
-        if (from.z == 0 || lobe == Lobe::Smooth) return std::nullopt;
+        if (from.z == 0) return std::nullopt;
         if (lobe == Lobe::DeltaReflection) return ScatterSample{reflected(from), lobe};
+        if (lobe != Lobe::DeltaTransmission) return std::nullopt;
         const double relative = from.z > 0 ? 1 / ior : ior, cosTo = refractedCosine(from);
         if (!(cosTo > 0)) return std::nullopt;
         const float scale = float(-relative);
@@ -101,10 +102,7 @@ private:
         using std::abs;
         const bool thinIsExterior = ior > 1;
         if ((a > 0) != (b > 0)) return fresnelFromThinSide(abs((a > 0) == thinIsExterior ? a : b), ratio());
-        const T c = T(0.5) * (abs(a) + abs(b));
-        if ((a > 0) == thinIsExterior) return fresnelFromThinSide(c, ratio());
-        const T thin = cosThinFromDense(c, ratio());
-        return thin < T(0) ? T(1) : fresnelFromThinSide(thin, ratio());
+        return fresnelDielectric(T(0.5) * (abs(a) + abs(b)), ratio(), (a > 0) == thinIsExterior);
     }
 };
 

@@ -1,8 +1,7 @@
 #pragma once
 // Fresnel equations for unpolarised light (Born & Wolf, Principles of Optics, §1.5.2 and §13.4; Mitsuba 3 follows them too).
 
-#include <algorithm>
-#include <cmath>
+#include "core/base/vector.h"
 
 namespace ulam {
 
@@ -25,6 +24,17 @@ T cosThinFromDense(T cosDense, double ratio) {
     return c2 > T(0) ? sqrt(c2) : T(-1);
 }
 
+/// Reflectance of a smooth dielectric interface from either side, total internal reflection included.
+template <class T>
+T fresnelDielectric(T cosTheta, double ratio, bool fromThinSide) {
+    if (fromThinSide) return fresnelFromThinSide(cosTheta, ratio);
+    const T thin = cosThinFromDense(cosTheta, ratio);
+    return thin < T(0) ? T(1) : fresnelFromThinSide(thin, ratio);
+}
+
+/// Part of diffuse light from inside that a smooth interface throws back; ior = interior over exterior.
+double diffuseFresnelFromInside(double ior);
+
 /// Reflectance of a conductor of complex index eta + i k against air.
 template <class T>
 T fresnelConductor(T cosTheta, double eta, double k) {
@@ -39,6 +49,10 @@ T fresnelConductor(T cosTheta, double eta, double k) {
     const T t3 = a2b2 * c2 + s2 * s2, t4 = t2 * s2;
     const T rp = rs * (t3 - t4) / (t3 + t4);
     return T(0.5) * (rs + rp);
+}
+template <class T>
+Imath::Color3<T> fresnelConductor(T cosTheta, const Spectrum& eta, const Spectrum& k) {
+    return {fresnelConductor(cosTheta, eta.x, k.x), fresnelConductor(cosTheta, eta.y, k.y), fresnelConductor(cosTheta, eta.z, k.z)};
 }
 
 }  // namespace ulam

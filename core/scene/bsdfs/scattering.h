@@ -6,15 +6,18 @@
 //   eval(toLight, toCamera, lobe)   f_s of radiance flowing from the light side to the camera side, without cosines
 //   pdf(from, to, lobe)             density of `to` per solid angle when the walk arrived along `from`
 //   probability(from, to, lobe)     the part of pdf that chooses the lobe
-//   sampleLobe(from, lobe, u)       a direction of a given lobe, from u[0], u[1]
+//   sampleLobe(from, lobe, u)       a direction of a given lobe, from u[0], u[1] and, where a lobe is a mixture, u[2]
 //   sample(from, u)                 the same of a lobe chosen with u[2]; the smooth lobe has the upper end of it
-//   invert(from, to, lobe, u)       u such that sample(from, u) = to; numbers that do not matter stay as they are
+//   invert(from, to, lobe, u)       u such that sample(from, u) = to; numbers that do not matter stay as they are. Many u may
+//                                   give the same `to` (u[2] chooses a lobe, or a part of a mixture): random numbers in u
+//                                   come back with the law of u given `to`
 //   albedo()                        bounds the reflected fraction; the Russian roulette's probability of going on
 //   hasDelta, hasSmooth, hasNull    which lobes there are; hasNull where one of the delta lobes may be Lobe::Null
 //   transmits                       light reaches the other side, straight on or refracted
 //   smoothShare(from)               probability that sample() chooses the smooth lobe, where there are delta lobes too
 //   anisotropic()                   whether the azimuth matters (absent: it does not); x then is along ∂p/∂u
-//   textured(visit)                 names the members that a texture may stand for; nothing derived from them is kept
+//   textured(visit)                 names the members that a texture may stand for; nothing derived from them is kept, and
+//                                   values out of range are clamped on use. A name listed twice stands for both members
 // For delta lobes eval and pdf are the factors of δ_σ (lobe.h).
 
 #include "core/base/random.h"
