@@ -31,28 +31,53 @@ double conductorReflectance(double cosTheta, double eta, double k) {
     return (std::norm(s) + std::norm(p)) / 2;
 }
 
-// One function a BSDF: f_s and the densities from the lobe and the signed cosines with the shading normal.
+/// Microfacets as Walter et al. 2007 write them (eq. 25, 27, 33, 34), with the angle θ from the normal and the roughness
+/// along the azimuth of the direction.
+struct Microfacets {
+    bool ggx;
+    double alphaU, alphaV;
 
-Factors factorsOf(const Diffuse& bsdf, Lobe lobe, double cosLight, double cosCamera) {
+    Microfacets(MicrofacetDistribution::Kind kind, double u, double v)
+        : ggx(kind == MicrofacetDistribution::Kind::Ggx), alphaU(std::clamp(u, 1e-4, 1.0)), alphaV(std::clamp(v, 1e-4, 1.0)) {}
+
+    double density(const Vec3d& m) const {
+        if (m.z <= 0) return 0;
+        const double tan2 = std::pow(m.x / m.z / alphaU, 2) + std::pow(m.y / m.z / alphaV, 2);
+        const double normalised = ggx ? 1 / std::pow(1 + tan2, 2) : std::exp(-tan2);
+        return normalised / (kPi * alphaU * alphaV * std::pow(m.z, 4));
+    }
+    double g1(const Vec3d& w) const {
+        const double t = std::hypot(w.x * alphaU, w.y * alphaV) / std::abs(w.z);
+        if (ggx) return 2 / (1 + std::sqrt(1 + t * t));
+        return t == 0 ? 1 : 2 / (1 + std::erf(1 / t) + t * std::exp(-1 / (t * t)) / std::sqrt(kPi));
+    }
+};
+
+// One function a BSDF: f_s and the densities from the lobe and both directions in the frame of the shading normal.
+
+Factors factorsOf(const Diffuse& bsdf, Lobe lobe, const Vec3d& l, const Vec3d& c) {
+    const double cosLight = l.z, cosCamera = c.z;
     if (lobe != Lobe::Smooth || cosLight <= 0 || cosCamera <= 0) return {};
     const Spectrum& r = bsdf.reflectance;
     return {r.x / kPi, r.y / kPi, r.z / kPi, cosCamera / kPi, cosLight / kPi};
 }
 
-Factors factorsOf(const Conductor& bsdf, Lobe lobe, double cosLight, double cosCamera) {
+Factors factorsOf(const Conductor& bsdf, Lobe lobe, const Vec3d& l, const Vec3d& c) {
+    const double cosLight = l.z, cosCamera = c.z;
     if (lobe != Lobe::DeltaReflection || cosLight <= 0 || cosCamera <= 0) return {};
     Factors out;
-    for (int c = 0; c < 3; ++c)
-        out[size_t(c)] = bsdf.specularReflectance[c] * conductorReflectance(cosLight, bsdf.eta[c], bsdf.k[c]);
+    for (int i = 0; i < 3; ++i)
+        out[size_t(i)] = bsdf.specularReflectance[i] * conductorReflectance(cosLight, bsdf.eta[i], bsdf.k[i]);
     out[3] = cosCamera;
     out[4] = cosLight;
     return out;
 }
 
-Factors factorsOf(const Dielectric& bsdf, Lobe lobe, double cosLight, double cosCamera) {
+Factors factorsOf(const Dielectric& bsdf, Lobe lobe, const Vec3d& l, const Vec3d& c) {
+    const double cosLight = l.z, cosCamera = c.z;
     const double nLight = cosLight > 0 ? 1 : bsdf.ior, nCamera = cosCamera > 0 ? 1 : bsdf.ior;
     const bool sameSide = (cosLight > 0) == (cosCamera > 0);
-    if (lobe == Lobe::Smooth || sameSide != (lobe == Lobe::DeltaReflection)) return {};
+    if (lobe != (sameSide ? Lobe::DeltaReflection : Lobe::DeltaTransmission)) return {};
     const double a = std::abs(cosLight), b = std::abs(cosCamera);
     // The two rays obey the lobe's law up to rounding. Reflection: their mean. Refraction: the ray on the thin side,
     // which says more about the angles than the other.
@@ -67,15 +92,126 @@ Factors factorsOf(const Dielectric& bsdf, Lobe lobe, double cosLight, double cos
     return {tint.x * f, tint.y * f, tint.z * f, chosen * b * nCamera * nCamera, chosen * a * nLight * nLight};
 }
 
+Factors factorsOf(const ThinDielectric& bsdf, Lobe lobe, const Vec3d& l, const Vec3d& c) {
+    const bool sameSide = (l.z > 0) == (c.z > 0);
+    if (lobe != (sameSide ? Lobe::DeltaReflection : Lobe::Null)) return {};
+    const double a = std::abs(l.z), b = std::abs(c.z), r = fresnelReflectance(1, (a + b) / 2, bsdf.ior);
+    // r + t² r + t² r³ + …, and the rest.
+    const double all = r < 1 ? r + (1 - r) * (1 - r) * r / (1 - r * r) : 1, chosen = sameSide ? all : 1 - all;
+    const Spectrum& tint = sameSide ? bsdf.specularReflectance : bsdf.specularTransmittance;
+    return {tint.x * chosen, tint.y * chosen, tint.z * chosen, chosen * b, chosen * a};
+}
+
+Factors factorsOf(const Null&, Lobe lobe, const Vec3d& l, const Vec3d& c) {
+    if (lobe != Lobe::Null || l.z * c.z >= 0) return {};
+    return {1, 1, 1, std::abs(c.z), std::abs(l.z)};
+}
+
+/// Probability of the coat's part where it reflects the part r of the light, and the base's colour divided by what the coat
+/// throws back inside.
+double coatPart(double r, const Spectrum& coat, const Spectrum& base) {
+    const double a = (coat.x + coat.y + coat.z) / 3 * r, b = (base.x + base.y + base.z) / 3 * (1 - r);
+    return a + b > 0 ? a / (a + b) : 1;
+}
+double baseColour(double reflectance, const Coat& coat) {
+    return reflectance / (1 - coat.internalReflectance * (coat.nonlinear ? reflectance : 1)) / (coat.ior * coat.ior);
+}
+
+Factors factorsOf(const Plastic& bsdf, Lobe lobe, const Vec3d& l, const Vec3d& c) {
+    if (l.z <= 0 || c.z <= 0) return {};
+    const double rLight = fresnelReflectance(1, l.z, bsdf.coat.ior), rCamera = fresnelReflectance(1, c.z, bsdf.coat.ior);
+    const double partLight = coatPart(rLight, bsdf.specularReflectance, bsdf.diffuseReflectance);
+    const double partCamera = coatPart(rCamera, bsdf.specularReflectance, bsdf.diffuseReflectance);
+    Factors out{};
+    if (lobe == Lobe::DeltaReflection) {
+        const double r = fresnelReflectance(1, (l.z + c.z) / 2, bsdf.coat.ior);
+        for (int i = 0; i < 3; ++i) out[size_t(i)] = bsdf.specularReflectance[i] * r;
+        out[3] = partLight * c.z;
+        out[4] = partCamera * l.z;
+    } else if (lobe == Lobe::Smooth) {
+        for (int i = 0; i < 3; ++i)
+            out[size_t(i)] = baseColour(bsdf.diffuseReflectance[i], bsdf.coat) * (1 - rLight) * (1 - rCamera) / kPi;
+        out[3] = (1 - partLight) * c.z / kPi;
+        out[4] = (1 - partCamera) * l.z / kPi;
+    }
+    return out;
+}
+
+Factors factorsOf(const RoughConductor& bsdf, Lobe lobe, const Vec3d& l, const Vec3d& c) {
+    if (lobe != Lobe::Smooth || l.z <= 0 || c.z <= 0) return {};
+    const Microfacets microfacets(bsdf.kind, bsdf.alphaU, bsdf.alphaV);
+    const Vec3d m = (l + c).normalized();
+    const double d = microfacets.density(m), gLight = microfacets.g1(l), gCamera = microfacets.g1(c);
+    Factors out;
+    for (int i = 0; i < 3; ++i)
+        out[size_t(i)] = bsdf.specularReflectance[i] * conductorReflectance(l.dot(m), bsdf.eta[i], bsdf.k[i]) * d * gLight *
+                         gCamera / (4 * l.z * c.z);
+    out[3] = d * gLight / (4 * l.z);
+    out[4] = d * gCamera / (4 * c.z);
+    return out;
+}
+
+Factors factorsOf(const RoughDielectric& bsdf, Lobe lobe, const Vec3d& l, const Vec3d& c) {
+    if (lobe != Lobe::Smooth || l.z * c.z == 0) return {};
+    const Microfacets microfacets(bsdf.kind, bsdf.alphaU, bsdf.alphaV);
+    const double nLight = l.z > 0 ? 1 : bsdf.ior, nCamera = c.z > 0 ? 1 : bsdf.ior;
+    const bool sameSide = l.z * c.z > 0;
+    Vec3d m = (sameSide ? l + c : l * nLight + c * nCamera).normalized();
+    if (m.z < 0) m = -m;
+    const double lm = l.dot(m), cm = c.dot(m);
+    if (lm * l.z <= 0 || cm * c.z <= 0) return {};
+    const double d = microfacets.density(m), gLight = microfacets.g1(l), gCamera = microfacets.g1(c);
+    // Densities of m, as seen from either side.
+    const double seenLight = d * gLight * std::abs(lm / l.z), seenCamera = d * gCamera * std::abs(cm / c.z);
+    Factors out;
+    if (sameSide) {
+        const double r = fresnelReflectance(nLight, std::abs(lm), nLight == 1 ? bsdf.ior : 1);
+        for (int i = 0; i < 3; ++i)
+            out[size_t(i)] = bsdf.specularReflectance[i] * r * d * gLight * gCamera / (4 * std::abs(l.z * c.z));
+        out[3] = r * seenLight / (4 * std::abs(cm));
+        out[4] = r * seenCamera / (4 * std::abs(lm));
+        return out;
+    }
+    const double t = 1 - (nLight < nCamera ? fresnelReflectance(nLight, std::abs(lm), nCamera)
+                                           : fresnelReflectance(nCamera, std::abs(cm), nLight));
+    const double sum2 = std::pow(nLight * lm + nCamera * cm, 2);
+    for (int i = 0; i < 3; ++i)
+        out[size_t(i)] = bsdf.specularTransmittance[i] * std::abs(lm * cm / (l.z * c.z)) * nCamera * nCamera * t * gLight *
+                         gCamera * d / sum2;
+    out[3] = t * seenLight * nCamera * nCamera * std::abs(cm) / sum2;
+    out[4] = t * seenCamera * nLight * nLight * std::abs(lm) / sum2;
+    return out;
+}
+
+// The tabulated transmittances are data of the BSDF, like its index.
+Factors factorsOf(const RoughPlastic& bsdf, Lobe lobe, const Vec3d& l, const Vec3d& c) {
+    if (lobe != Lobe::Smooth || l.z <= 0 || c.z <= 0) return {};
+    const Microfacets microfacets(bsdf.distribution.kind, bsdf.distribution.alphaU, bsdf.distribution.alphaV);
+    const Vec3d m = (l + c).normalized();
+    const double d = microfacets.density(m), gLight = microfacets.g1(l), gCamera = microfacets.g1(c);
+    const double tLight = bsdf.transmittance(l.z), tCamera = bsdf.transmittance(c.z);
+    const double r = fresnelReflectance(1, l.dot(m), bsdf.coat.ior);
+    const double partLight = coatPart(1 - tLight, bsdf.specularReflectance, bsdf.diffuseReflectance);
+    const double partCamera = coatPart(1 - tCamera, bsdf.specularReflectance, bsdf.diffuseReflectance);
+    Factors out;
+    for (int i = 0; i < 3; ++i)
+        out[size_t(i)] = bsdf.specularReflectance[i] * r * d * gLight * gCamera / (4 * l.z * c.z) +
+                         baseColour(bsdf.diffuseReflectance[i], bsdf.coat) * tLight * tCamera / kPi;
+    out[3] = partLight * d * gLight / (4 * l.z) + (1 - partLight) * c.z / kPi;
+    out[4] = partCamera * d * gCamera / (4 * c.z) + (1 - partCamera) * l.z / kPi;
+    return out;
+}
+
+/// Straight light passes a cut-out part as it is.
 template <class B>
-Factors factorsOf(const Masked<B>& bsdf, Lobe lobe, double cosLight, double cosCamera) {
-    Factors out = factorsOf(bsdf.nested, lobe, cosLight, cosCamera);
+Factors factorsOf(const Masked<B>& bsdf, Lobe lobe, const Vec3d& l, const Vec3d& c) {
+    Factors out = factorsOf(bsdf.nested, lobe, l, c);
     for (double& x : out) x *= bsdf.opacity;
-    if (lobe != Lobe::Null || (cosLight > 0) == (cosCamera > 0)) return out;
+    if (lobe != Lobe::Null || (l.z > 0) == (c.z > 0)) return out;
     const double passed = 1 - bsdf.opacity;
-    for (size_t c = 0; c < 3; ++c) out[c] += passed;
-    out[3] += passed * std::abs(cosCamera);
-    out[4] += passed * std::abs(cosLight);
+    for (size_t i = 0; i < 3; ++i) out[i] += passed;
+    out[3] += passed * std::abs(c.z);
+    out[4] += passed * std::abs(l.z);
     return out;
 }
 
@@ -90,6 +226,44 @@ FactorRanges emptyRanges() {
     FactorRanges ranges;
     ranges.fill({std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()});
     return ranges;
+}
+
+/// What a tilt of the half vector does to a narrow distribution: evaluates at the corners of the box of errors towards which
+/// each factor grows and falls.
+template <class B>
+void extendByTilt(FactorRanges& ranges, const B& bsdf, Lobe lobe, const Vec3d& l, const Vec3d& c) {
+    using Shift = std::array<double, 6>;
+    const auto shifted = [&](const Shift& s) {
+        return factorsOf(bsdf, lobe, l + Vec3d(s[0], s[1], s[2]), c + Vec3d(s[3], s[4], s[5]));
+    };
+    std::array<Shift, 5> corners;
+    for (size_t i = 0; i < 6; ++i) {
+        Shift up{}, down{};
+        up[i] = kCosineError;
+        down[i] = -kCosineError;
+        const Factors high = shifted(up), low = shifted(down);
+        for (size_t j = 0; j < 5; ++j) corners[j][i] = high[j] > low[j] ? kCosineError : -kCosineError;
+    }
+    for (Shift& corner : corners) {
+        extend(ranges, shifted(corner));
+        for (double& s : corner) s = -s;
+        extend(ranges, shifted(corner));
+    }
+}
+template <class B>
+constexpr bool kHasMicrofacets = std::is_same_v<B, RoughConductor> || std::is_same_v<B, RoughDielectric> || std::is_same_v<B, RoughPlastic>;
+template <class B>
+constexpr bool kHasMicrofacets<Masked<B>> = kHasMicrofacets<B>;
+
+/// Around the shading normal, x along the tangent where the BSDF asks for it.
+template <class B>
+Vec3d localDirection(const Scene& scene, const Vertex& v, const B& bsdf, const Vec3d& w) {
+    const Vec3d z = inDouble(v.shadingNormal);
+    Vec3d along = std::abs(z.x) < 0.5 ? Vec3d(1, 0, 0) : Vec3d(0, 1, 0);
+    if constexpr (requires { bsdf.anisotropic(); })
+        if (bsdf.anisotropic()) along = inDouble(scene.shapes[v.shape].tangent(v));
+    const Vec3d x = (along - z * z.dot(along)).normalized();
+    return {x.dot(w), z.cross(x).dot(w), z.dot(w)};
 }
 
 FactorRanges exactly(const Spectrum& f, double toCamera, double toLight) {
@@ -160,14 +334,19 @@ double exactCosine(const Vertex& v, const Vec3d& w) {
 }
 
 FactorRanges scatteringReference(const Scene& scene, const Vertex& v, const Vec3d& toLight, const Vec3d& toCamera) {
-    const Vec3d n = inDouble(v.shadingNormal);
-    const double cosLight = n.dot(toLight), cosCamera = n.dot(toCamera), geometric = exactCosine(v, toLight);
+    const double cosLight = inDouble(v.shadingNormal).dot(toLight), geometric = exactCosine(v, toLight);
     FactorRanges ranges = emptyRanges();
-    for (const double l : {cosLight - kCosineError, cosLight, cosLight + kCosineError})
-        for (const double c : {cosCamera - kCosineError, cosCamera, cosCamera + kCosineError}) {
-            const double side = scene.materialAt(v).back && !(l > 0) ? -1 : 1;
-            extend(ranges, withBsdf(scene, v, float(l), [&](const auto& bsdf, const LocalFrame&) { return factorsOf(bsdf, v.lobe, side * l, side * c); }));
-        }
+    for (const double errorLight : {-kCosineError, 0.0, kCosineError}) {
+        const double cosine = cosLight + errorLight, side = scene.materialAt(v).back && !(cosine > 0) ? -1 : 1;
+        withBsdf(scene, v, float(cosine), [&]<class B>(const B& bsdf, const LocalFrame&) {
+            const Vec3d l = localDirection(scene, v, bsdf, toLight), c = localDirection(scene, v, bsdf, toCamera);
+            const Vec3d sideLight(l.x, l.y, side * (l.z + errorLight));
+            for (const double errorCamera : {-kCosineError, 0.0, kCosineError})
+                extend(ranges, factorsOf(bsdf, v.lobe, sideLight, Vec3d(c.x, c.y, side * (c.z + errorCamera))));
+            if constexpr (kHasMicrofacets<B>)
+                if (errorLight == 0) extendByTilt(ranges, bsdf, v.lobe, sideLight, Vec3d(c.x, c.y, side * c.z));
+        });
+    }
     // f_s |n_s·w| = f̂_s |n_g·w| with w towards the light (Veach 1997, §5.3.2). The same normals give exactly 1.
     if (v.shadingNormal == v.normal) return ranges;
     const double low = std::max(0.0, std::abs(cosLight) - kCosineError) / (geometric + kCosineError);

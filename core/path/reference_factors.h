@@ -40,8 +40,8 @@ FactorRanges emissionReference(const Scene& scene, const Vertex& x0, const Vec3d
 /// W_e(w) and the density of w at x_k.
 FactorRanges importanceReference(const Scene& scene, const Vertex& lens, const Vec3d& w);
 
-/// How far two directions at a delta vertex are from the law of its lobe: |reflect(l) − c|, or |η_l l_t + η_c c_t| with
-/// the tangential parts and indices in units of the exterior's; 0 for other lobes.
+/// How far two directions at a delta vertex are from the law of its lobe: |reflect(l) − c|, |l + c|, or |η_l l_t + η_c c_t|
+/// with the tangential parts and indices in units of the exterior's; 0 for other lobes.
 double deltaLawError(const Scene& scene, const Vertex& v, const Vec3d& toLight, const Vec3d& toCamera);
 
 }  // namespace ulam

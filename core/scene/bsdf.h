@@ -5,19 +5,34 @@
 #include "core/scene/bsdfs/dielectric.h"
 #include "core/scene/bsdfs/diffuse.h"
 #include "core/scene/bsdfs/mask.h"
+#include "core/scene/bsdfs/null.h"
+#include "core/scene/bsdfs/plastic.h"
+#include "core/scene/bsdfs/roughconductor.h"
+#include "core/scene/bsdfs/roughdielectric.h"
+#include "core/scene/bsdfs/roughplastic.h"
+#include "core/scene/bsdfs/thindielectric.h"
 
 #include <variant>
 
 namespace ulam {
 
-using Bsdf = std::variant<Diffuse, Conductor, Dielectric>;
+using Bsdf = std::variant<Diffuse, Conductor, Dielectric, RoughConductor, RoughDielectric, ThinDielectric, Plastic, RoughPlastic, Null>;
 
 /// Calls `function` with the BSDF's own type: a switch, no virtual call.
 template <class Function>
 decltype(auto) dispatch(const Bsdf& bsdf, Function&& function) {
-    if (const auto* diffuse = std::get_if<Diffuse>(&bsdf)) return function(*diffuse);
-    if (const auto* dielectric = std::get_if<Dielectric>(&bsdf)) return function(*dielectric);
-    return function(std::get<Conductor>(bsdf));
+    static_assert(std::variant_size_v<Bsdf> == 9);
+    switch (bsdf.index()) {
+        case 0: return function(*std::get_if<0>(&bsdf));
+        case 1: return function(*std::get_if<1>(&bsdf));
+        case 2: return function(*std::get_if<2>(&bsdf));
+        case 3: return function(*std::get_if<3>(&bsdf));
+        case 4: return function(*std::get_if<4>(&bsdf));
+        case 5: return function(*std::get_if<5>(&bsdf));
+        case 6: return function(*std::get_if<6>(&bsdf));
+        case 7: return function(*std::get_if<7>(&bsdf));
+        default: return function(*std::get_if<8>(&bsdf));
+    }
 }
 
 }  // namespace ulam

@@ -41,7 +41,9 @@ PluginInfo infoOf(const char* name, const char* summary) {
             parameter.type = "json";
             parameter.help += "; a number or a name such as \"water\"";
         }
-    auto list = [&](const char* parameter, auto) { info.textured.push_back(parameter); };
+    auto list = [&](const char* parameter, auto) {
+        if (info.textured.empty() || info.textured.back() != parameter) info.textured.push_back(parameter);
+    };
     B::textured(list);
     return info;
 }
@@ -65,8 +67,12 @@ Material readPlain(const JsonNode& node, PluginResolver& resolver) {
     list.parse(node, elsewhere);
     Coating coating{B(parameters), {}};
     for (const TexturedParameter& t : textured) {
-        const auto place = std::find(info.textured.begin(), info.textured.end(), t.name);
-        coating.bindings.push_back({int(place - info.textured.begin()), t.texture});
+        int member = 0;
+        auto bind = [&](const char* name, auto) {
+            if (t.name == name) coating.bindings.push_back({member, t.texture});
+            ++member;
+        };
+        B::textured(bind);
     }
     return Material(std::move(coating));
 }

@@ -1,10 +1,10 @@
 // BSDFs: samples against densities, inverses, reciprocity, energy, Fresnel, derivatives.
 
-#include "core/scene/bsdf.h"
-
 #include <complex>
 
+#include "core/path/reference_factors.h"
 #include "core/path/scattering.h"
+#include "tests/core/scene/bsdf_examples.h"
 #include "tests/support/chi_square.h"
 #include "tests/support/dual.h"
 #include "tests/support/path_scenes.h"
@@ -13,33 +13,6 @@ using namespace ulam;
 
 namespace {
 
-Diffuse diffuse(double reflectance) {
-    Diffuse::Parameters p;
-    p.reflectance = Spectrum(reflectance, 0.5 * reflectance, 0.25 * reflectance);
-    return Diffuse(p);
-}
-Conductor conductor(double eta, double k) {
-    Conductor::Parameters p;
-    p.eta = Spectrum(eta, 1.2 * eta, 0.8 * eta), p.k = Spectrum(k, 1.3 * k, 0.7 * k);
-    return Conductor(p);
-}
-Dielectric dielectric(double inside, double outside = 1) {
-    Dielectric::Parameters p;
-    p.intIor = inside, p.extIor = outside;
-    return Dielectric(p);
-}
-
-const std::vector<Bsdf>& bsdfs() {
-    static const std::vector<Bsdf> all = {diffuse(0.8),    conductor(0.2, 3.9), conductor(0, 1), conductor(2.5, 0),
-                                          dielectric(1.5), dielectric(1, 1.5),  dielectric(2.4), dielectric(1.0001)};
-    return all;
-}
-
-Vec3f onSphere(Random& random) {
-    const double u = random(), v = random();
-    return squareToSphere(u, v);
-}
-
 /// A scene with one shape of this material, and a vertex on it with tilted shading normal.
 struct Tilted {
     Scene scene;
@@ -47,6 +20,9 @@ struct Tilted {
 
     explicit Tilted(Random& random) : scene(buildScene(pathScene("diffuse").dictionary)) {
         vertex.kind = Vertex::Kind::Surface;
+        tilt(random);
+    }
+    void tilt(Random& random) {
         vertex.normal = onSphere(random);
         vertex.shadingNormal = normalize(vertex.normal + onSphere(random) * 0.6f);
     }
@@ -90,13 +66,55 @@ TEST_CASE("diffuse: samples follow their density, in the local frame and in tilt
     }
 }
 
+TEST_CASE("at a vertex, BSDFs agree with a second writing of their definitions") {
+    Random random(makeKey(14), 0, 0);
+    const auto within = [](double value, const Range& range) {
+        const double slack = 1e-6 * std::abs(range.high) + 1e-12;
+        return value >= range.low - slack && value <= range.high + slack;
+    };
+    Tilted x(random);
+    Material& material = x.scene.materials[x.scene.shapes[x.vertex.shape].material];
+    for (const Bsdf& bsdf : bsdfs())
+        for (const bool masked : {false, true}) {
+            material = Material({bsdf, {}});
+            if (masked) material.mask(0.4, kNone);
+            int compared = 0;
+            for (int i = 0; i < 2000; ++i) {
+                x.tilt(random);
+                // Along the normal, a tangent says little about the x axis.
+                const Vec3f tangent = x.scene.shapes[x.vertex.shape].tangent(x.vertex);
+                if (std::abs(dot(normalize(tangent), x.vertex.shadingNormal)) > 0.9f) continue;
+                const Vec3f toLight = onSphere(random);
+                ScatteredDirection s;
+                if (!sampleScattering(x.scene, x.vertex, toLight, From::Light, random.nextBlock(), s)) continue;
+                const Scattering found = scatter(x.scene, x.vertex, x.vertex.lobe, toLight, s.direction);
+                const FactorRanges ranges = scatteringReference(x.scene, x.vertex, inDouble(toLight), inDouble(s.direction));
+                const double values[] = {found.f.x, found.f.y, found.f.z, found.pdfToCamera, found.pdfToLight};
+                for (size_t j = 0; j < 5; ++j) {
+                    INFO("BSDF " << bsdf.index() << ", lobe " << int(x.vertex.lobe) << ", factor " << j << ": " << values[j] << " in ["
+                                 << ranges[j].low << ", " << ranges[j].high << "]");
+                    REQUIRE(within(values[j], ranges[j]));
+                    // A range that says something.
+                    if (std::abs(dot(x.vertex.normal, toLight)) > 0.1f && std::abs(dot(x.vertex.shadingNormal, toLight)) > 0.1f &&
+                        std::abs(dot(x.vertex.shadingNormal, s.direction)) > 0.1f)
+                        CHECK(ranges[j].high - ranges[j].low < 0.01 * ranges[j].high);
+                }
+                ++compared;
+            }
+            CHECK(compared > 50);
+        }
+}
+
 TEST_CASE("nothing is sampled from the wrong side of an opaque surface") {
     Random random(makeKey(8), 0, 0);
     for (int i = 0; i < 1000; ++i) {
         Vec3f w = onSphere(random);
         w.z = -std::abs(w.z);
-        CHECK_FALSE(diffuse(1).sample(w, random.nextBlock()));
-        CHECK_FALSE(conductor(0, 1).sample(w, random.nextBlock()));
+        for (const Bsdf& any : bsdfs())
+            dispatch(any, [&](const auto& bsdf) {
+                const auto s = bsdf.sample(w, random.nextBlock());
+                if (!bsdf.transmits) REQUIRE_FALSE(s);
+            });
     }
 }
 
@@ -127,6 +145,38 @@ TEST_CASE("delta lobes are chosen with their probabilities and obey their laws")
             CHECK(probabilities[0] + probabilities[1] == Approx(1));
             CHECK_FIT(misfit(counts, probabilities));
         }
+}
+
+TEST_CASE("lobes are chosen with their probabilities") {
+    Random random(makeKey(13), 0, 0);
+    const std::array lobes{Lobe::Smooth, Lobe::DeltaReflection, Lobe::DeltaTransmission, Lobe::Null};
+    const auto check = [&](const auto& bsdf) {
+        for (const double z : {1.0, 0.6, 0.1, -0.3}) {
+            const Vec3f from = directionOf(2, z);
+            if (z < 0 && !bsdf.transmits) continue;
+            std::array<double, 4> counts{}, probabilities{};
+            for (size_t i = 0; i < 4; ++i) {
+                std::optional<ScatterSample> s;
+                // A smooth lobe may miss; its probability is that of any direction it finds.
+                for (int tries = 0; tries < 10 && !s; ++tries) s = bsdf.sampleLobe(from, lobes[i], random.nextBlock());
+                if (!s) continue;
+                const Vec3d a(from), b(s->to);
+                probabilities[i] = bsdf.probability(a, b, lobes[i]);
+                // The rest of a delta lobe's density is cosθ η².
+                const double n = indexBeside(bsdf, s->to);
+                if (isDelta(lobes[i])) CHECK(bsdf.pdf(a, b, lobes[i]) == Approx(probabilities[i] * n * n * std::abs(b.z)));
+            }
+            for (int i = 0; i < 100'000; ++i)
+                if (const auto s = bsdf.sample(from, random.nextBlock())) ++counts[size_t(s->lobe)];
+            if (!bsdf.hasDelta) continue;
+            CHECK_FIT(misfit(counts, probabilities));
+            if constexpr (requires { bsdf.smoothShare(from); })
+                CHECK(bsdf.smoothShare(from) == Approx(probabilities[0]));
+            else
+                CHECK_FALSE((bsdf.hasDelta && bsdf.hasSmooth));
+        }
+    };
+    for (const Bsdf& any : bsdfs()) dispatch(any, check);
 }
 
 TEST_CASE("the numbers of a direction give the direction again") {
@@ -162,11 +212,7 @@ TEST_CASE("BSDFs are reciprocal up to the squared index of the medium") {
                 const auto s = bsdf.sample(a, random.nextBlock());
                 if (!s) continue;
                 // f(l → c) / η_c² = f(c → l) / η_l² (lobe.h)
-                double na = 1, nb = 1;
-                if (const auto* glass = std::get_if<Dielectric>(&any)) {
-                    if (a.z < 0) na = glass->ior;
-                    if (s->to.z < 0) nb = glass->ior;
-                }
+                const double na = indexBeside(bsdf, a), nb = indexBeside(bsdf, s->to);
                 const Spectrum f = bsdf.eval(Vec3d(a), Vec3d(s->to), s->lobe),
                                g = bsdf.eval(Vec3d(s->to), Vec3d(a), s->lobe);
                 for (int c = 0; c < 3; ++c) REQUIRE(f[c] / (nb * nb) == Approx(g[c] / (na * na)).epsilon(1e-5));
@@ -177,34 +223,29 @@ TEST_CASE("BSDFs are reciprocal up to the squared index of the medium") {
 
 TEST_CASE("no BSDF reflects more than it receives, and none more than its albedo") {
     for (const Bsdf& any : bsdfs())
-        for (const double z : {1.0, 0.9, 0.5, 0.1, 0.01, -0.01, -0.5, -1.0}) {
-            const Vec3f to = directionOf(0.4, z);
-            Spectrum sum(0.0);
-            if (const auto* lambertian = std::get_if<Diffuse>(&any)) {
-                constexpr int kSteps = 400;
-                for (int i = 0; i < kSteps; ++i)
-                    for (int j = 0; j < kSteps; ++j) {
-                        const double cosine = (i + 0.5) / kSteps;
-                        const Vec3d l(directionOf((j + 0.5) / kSteps * 2 * kPi, cosine));
-                        sum += lambertian->eval(l, Vec3d(to), Lobe::Smooth) * (cosine * 2 * kPi / (kSteps * kSteps));
-                    }
-                for (int c = 0; c < 3; ++c)
-                    CHECK(sum[c] == Approx(z > 0 ? lambertian->reflectance[c] : 0).epsilon(1e-5));
-            } else {
-                // Of the light from one direction, the parts of power that each lobe takes: f / η² on its side.
-                dispatch(any, [&](const auto& bsdf) {
-                    for (const Lobe lobe : {Lobe::DeltaReflection, Lobe::DeltaTransmission}) {
-                        const auto s = bsdf.sampleLobe(to, lobe, Block{});
-                        if (!s) continue;
-                        double n = 1;
-                        if (const auto* glass = std::get_if<Dielectric>(&any); glass && s->to.z < 0) n = glass->ior;
-                        sum += bsdf.eval(Vec3d(to), Vec3d(s->to), lobe) / (n * n);
-                    }
-                });
-                if (std::holds_alternative<Dielectric>(any)) CHECK(sum.x == Approx(1).epsilon(1e-6));
+        dispatch(any, [&](const auto& bsdf) {
+            for (const double z : {1.0, 0.9, 0.5, 0.1, 0.01, -0.01, -0.5, -1.0}) {
+                INFO("BSDF " << any.index() << ", cosine " << z);
+                // Of the light from one direction, the parts of power that the lobes take: of a delta lobe f / η² on its
+                // side, else ∫ f |cosθ| dω.
+                const Vec3f from = directionOf(0.4, z);
+                Spectrum sum(0.0);
+                for (const Lobe lobe : {Lobe::DeltaReflection, Lobe::DeltaTransmission, Lobe::Null}) {
+                    const auto s = bsdf.sampleLobe(from, lobe, Block{});
+                    if (!s) continue;
+                    const double n = indexBeside(bsdf, s->to);
+                    sum += bsdf.eval(Vec3d(from), Vec3d(s->to), lobe) / (n * n);
+                }
+                if (bsdf.hasSmooth)
+                    sum += overSphere([&](const Vec3d& to) { return bsdf.eval(Vec3d(from), to, Lobe::Smooth) * std::abs(to.z); });
+                CHECK(maxComponent(sum) <= bsdf.albedo() * (1 + 2e-5));
+                using B = std::decay_t<decltype(bsdf)>;
+                if constexpr (std::is_same_v<B, Diffuse>)
+                    for (int c = 0; c < 3; ++c) CHECK(sum[c] == Approx(z > 0 ? bsdf.reflectance[c] : 0).epsilon(1e-5));
+                if constexpr (std::is_same_v<B, Dielectric> || std::is_same_v<B, ThinDielectric> || std::is_same_v<B, Null>)
+                    CHECK(sum.x == Approx(1).epsilon(1e-6));
             }
-            CHECK(maxComponent(sum) <= dispatch(any, [](const auto& bsdf) { return bsdf.albedo(); }) * (1 + 1e-6));
-        }
+        });
 }
 
 TEST_CASE("Fresnel: known values of dielectrics") {

@@ -1,0 +1,161 @@
+#pragma once
+// roughdielectric: interface of two transparent media with microfacets (Mitsuba 3 `roughdielectric`; Walter et al. 2007,
+// eq. 20 and 21). The shading normal points to the exterior. At the microfacet, reflection or transmission is chosen with
+// the Fresnel reflectance; one smooth lobe holds both.
+//
+// m is normal to the microfacet and has z > 0; n_l and n_c are the indices on the sides of light and camera. Radiance from
+// light to camera is scaled by n_c² on transmission, as in every f here.
+
+#include "core/base/error.h"
+#include "core/scene/bsdfs/fresnel.h"
+#include "core/scene/bsdfs/microfacet.h"
+
+namespace ulam {
+
+struct RoughDielectric {
+    struct Parameters {
+        double intIor = 1.5046, extIor = 1.000277;
+        Spectrum specularReflectance{1, 1, 1}, specularTransmittance{1, 1, 1};
+        MicrofacetParameters microfacets;
+        template <class V>
+        void describe(V& v) {
+            v("int_ior", intIor, {.help = "index of refraction inside; default BK7 glass", .min = 0.1, .max = 10});
+            v("ext_ior", extIor, {.help = "index of refraction outside, not the same; default air", .min = 0.1, .max = 10});
+            v("specular_reflectance", specularReflectance, {.help = "factor on the reflected light", .min = 0, .max = 1});
+            v("specular_transmittance", specularTransmittance, {.help = "factor on the transmitted light", .min = 0, .max = 1});
+            microfacets.describe(v);
+        }
+        double ior() const {
+            if (intIor == extIor) fail(ExitCode::InvalidConfig, "roughdielectric: int_ior and ext_ior must differ");
+            return intIor / extIor;
+        }
+    };
+    explicit RoughDielectric(const Parameters& p)
+        : ior(p.ior()),
+          specularReflectance(p.specularReflectance),
+          specularTransmittance(p.specularTransmittance),
+          kind(MicrofacetDistribution::kindOf(p.microfacets.distribution)),
+          alphaU(p.microfacets.alongU()),
+          alphaV(p.microfacets.alongV()) {}
+
+    static constexpr bool hasDelta = false, hasSmooth = true, hasNull = false, transmits = true;
+    bool anisotropic() const { return alphaU != alphaV; }
+
+    template <class V>
+    static void textured(V& v) {
+        v("specular_reflectance", &RoughDielectric::specularReflectance);
+        v("specular_transmittance", &RoughDielectric::specularTransmittance);
+        v("alpha", &RoughDielectric::alphaU);
+        v("alpha", &RoughDielectric::alphaV);
+        v("alpha_u", &RoughDielectric::alphaU);
+        v("alpha_v", &RoughDielectric::alphaV);
+    }
+
+    double albedo() const { return std::max(maxComponent(specularReflectance), maxComponent(specularTransmittance)); }
+
+    template <class T>
+    Color<T> eval(const Direction<T>& toLight, const Direction<T>& toCamera, Lobe lobe) const {
+        const Facet<T> facet(*this, toLight, toCamera, lobe);
+        if (!facet.scatters) return Color<T>(T(0));
+        const auto d = distribution();
+        const Direction<T> l = onUpperSide(toLight), c = onUpperSide(toCamera);
+        if (facet.reflects) return scaled(specularReflectance, facet.fresnel * roughReflection(d, l, c, facet.m));
+        const double n = index(toCamera.z > 0);
+        const T geometry = facet.cosines * d.density(facet.m) / (d.projectedArea(l) * d.projectedArea(c));
+        return scaled(specularTransmittance, (T(1) - facet.fresnel) * geometry * (n * n) / (facet.length * facet.length));
+    }
+
+    template <class T>
+    T pdf(const Direction<T>& from, const Direction<T>& to, Lobe lobe) const {
+        const Facet<T> facet(*this, from, to, lobe);
+        if (!facet.scatters) return T(0);
+        const auto d = distribution();
+        const Direction<T> w = onUpperSide(from);
+        if (facet.reflects) return facet.fresnel * roughReflectionPdf(d, w, facet.m);
+        // Density of the visible normal by dω_m / dω_to.
+        const double n = index(to.z > 0);
+        const T visible = facet.cosines * d.density(facet.m) / d.projectedArea(w);
+        return (T(1) - facet.fresnel) * visible * (n * n) / (facet.length * facet.length);
+    }
+
+    template <class T>
+    T probability(const Direction<T>&, const Direction<T>&, Lobe) const {
+        return T(1);
+    }
+
+    std::optional<ScatterSample> sampleLobe(const Vec3f& from, Lobe lobe, const Block& u) const {
+        if (lobe != Lobe::Smooth || from.z == 0) return std::nullopt;
+        const Vec3d w = onUpperSide(Vec3d(from)), m = distribution().sampleVisible(w, u[0], u[1]);
+        const double c = w.dot(m), relative = from.z > 0 ? 1 / ior : ior, c2 = 1 - (1 - c * c) * relative * relative;
+        if (!(c > 0)) return std::nullopt;
+        const bool reflects = u[2] < reflectance(c, from.z > 0);
+        const Vec3d to = reflects ? mirroredAt(w, m) : m * (relative * c - std::sqrt(std::max(0.0, c2))) - w * relative;
+        if (reflects != (to.z > 0) || to.z == 0) return std::nullopt;
+        return ScatterSample{Vec3f(to * (from.z > 0 ? 1 : -1)).normalized(), Lobe::Smooth};
+    }
+    std::optional<ScatterSample> sample(const Vec3f& from, const Block& u) const { return sampleLobe(from, Lobe::Smooth, u); }
+
+    bool invert(const Vec3f& from, const Vec3f& to, Lobe lobe, Block& u) const {
+        const Vec3d w(from);
+        const Facet<double> facet(*this, w, Vec3d(to), lobe);
+        // A direction is reflected or transmitted, according to its side.
+        if (!facet.scatters || (facet.reflects ? facet.fresnel : 1 - facet.fresnel) <= 0) return false;
+        const Sample2 s = distribution().invertVisible(onUpperSide(w), facet.m);
+        u[0] = s.u;
+        u[1] = s.v;
+        u[2] = facet.reflects ? u[2] * facet.fresnel : facet.fresnel + u[2] * (1 - facet.fresnel);
+        return true;
+    }
+
+    double ior;  // interior over exterior
+    Spectrum specularReflectance, specularTransmittance;
+    MicrofacetDistribution::Kind kind;
+    double alphaU, alphaV;
+
+private:
+    MicrofacetDistribution distribution() const { return {kind, alphaU, alphaV}; }
+    double ratio() const { return std::max(ior, 1 / ior); }
+    double index(bool exterior) const { return exterior ? 1 : ior; }
+
+    /// A distribution is symmetric about the origin: below the surface it is seen as from above.
+    template <class T>
+    static Direction<T> onUpperSide(const Direction<T>& w) {
+        return w.z > 0 ? w : -w;
+    }
+
+    template <class T>
+    T reflectance(T cosTheta, bool exterior) const {
+        return fresnelDielectric(cosTheta, ratio(), exterior == (ior > 1));
+    }
+
+    /// The microfacet between two directions.
+    template <class T>
+    struct Facet {
+        bool reflects, scatters;
+        Direction<T> m;
+        T length;   ///< |n_l l + n_c c|, in units of the exterior's index
+        T cosines;  ///< |l·m| |c·m|
+        T fresnel;
+
+        Facet(const RoughDielectric& bsdf, const Direction<T>& l, const Direction<T>& c, Lobe lobe)
+            : reflects(l.z * c.z > 0), scatters(lobe == Lobe::Smooth && !(l.z * c.z == 0)) {
+            using std::abs;
+            if (!scatters) return;
+            const double nLight = reflects ? 1 : bsdf.index(l.z > 0), nCamera = reflects ? 1 : bsdf.index(c.z > 0);
+            const HalfVector<T> h(l * T(nLight) + c * T(nCamera));
+            m = h.m;
+            length = h.length;
+            // Both on their own sides of the microfacet, as of the surface.
+            const T cosL = l.dot(m), cosC = c.dot(m);
+            scatters = cosL * l.z > 0 && cosC * c.z > 0;
+            if (!scatters) return;
+            cosines = abs(cosL * cosC);
+            if (reflects)
+                fresnel = bsdf.reflectance(T(0.5) * length, l.z > 0);
+            else
+                fresnel = fresnelFromThinSide(abs((l.z > 0) == (bsdf.ior > 1) ? cosL : cosC), bsdf.ratio());
+        }
+    };
+};
+
+}  // namespace ulam
