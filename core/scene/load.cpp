@@ -4,6 +4,7 @@
 
 #include "core/base/sha256.h"
 #include "core/scene/loading/emitters.h"
+#include "core/scene/loading/entries.h"
 #include "core/scene/loading/materials.h"
 #include "core/scene/loading/plugin_table.h"
 #include "core/scene/loading/sensors.h"
@@ -29,7 +30,7 @@ public:
     FilmSettings film(const JsonNode& replacement) { return readFilm(sensorNode(), replacement, context_); }
 
 private:
-    std::vector<JsonNode> entries() const;
+    std::vector<JsonNode> entries() const { return entriesOf(root_); }
     void checkNames() const;
     JsonNode sensorNode() const;
     JsonNode resolve(const JsonNode& node) override;
@@ -46,16 +47,6 @@ private:
     std::map<std::string, uint32_t> materials_, textures_;  // by JSON pointer of the plugin
 };
 
-std::vector<JsonNode> SceneBuilder::entries() const {
-    std::vector<JsonNode> result;
-    for (const auto& [key, member] : root_.members()) {
-        if (key == "type" || key == "id" || key == "$schema") continue;
-        if (!isPlugin(member)) member.expected("an object with a \"type\"");
-        result.push_back(member);
-    }
-    return result;
-}
-
 JsonNode SceneBuilder::sensorNode() const {
     std::optional<JsonNode> sensor;
     for (const JsonNode& entry : entries()) {
@@ -67,16 +58,10 @@ JsonNode SceneBuilder::sensorNode() const {
     return *sensor;
 }
 
-/// By which references name an entry.
-std::string nameOf(const JsonNode& entry) {
-    const auto own = entry.find("id");
-    return own ? own->string() : entry.key();
-}
-
 void SceneBuilder::checkNames() const {
     std::map<std::string, JsonNode> known;
     for (const JsonNode& entry : entries()) {
-        const auto [first, isNew] = known.try_emplace(nameOf(entry), entry);
+        const auto [first, isNew] = known.try_emplace(entryName(entry), entry);
         if (!isNew)
             entry.fail(fmt::format("another entry is called {} too", inQuotes(first->first)),
                        fmt::format("it stands at {}", first->second.where()));
@@ -92,7 +77,7 @@ JsonNode SceneBuilder::named(const JsonNode& node, PluginKind kind, const char* 
     const JsonNode id = node.at("id");
     std::vector<std::string> names;
     for (const JsonNode& entry : entries()) {
-        const std::string name = nameOf(entry);
+        const std::string name = entryName(entry);
         if (name == id.string()) {
             if (!contains(scenePlugins(kind), pluginName(entry)))
                 id.fail(fmt::format("{} is no {}, but {}", inQuotes(name), what, inQuotes(pluginName(entry))));
@@ -225,6 +210,10 @@ SceneDescription SceneDescription::fromNode(const JsonNode& node, const std::fil
 
 const Json& SceneDescription::dictionary() const {
     return content_->dictionary.json();
+}
+
+const std::filesystem::path& SceneDescription::folder() const {
+    return content_->folder;
 }
 
 const Generator* SceneDescription::generator() const {

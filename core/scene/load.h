@@ -21,6 +21,8 @@ public:
 
     /// Ordinary dictionary, generators expanded.
     const Json& dictionary() const;
+    /// Where relative paths in the dictionary start from.
+    const std::filesystem::path& folder() const;
     /// The generator it came from, or null.
     const Generator* generator() const;
 

@@ -1,8 +1,11 @@
-// ulam scene: what is in a scene.
+// ulam scene: what is in a scene; the scene in another renderer's language.
 
 #include <chrono>
 
 #include "core/base/error.h"
+#include "core/config/suggest.h"
+#include "core/scene/export/export_folder.h"
+#include "core/scene/export/mitsuba3.h"
 #include "experiments/cli/arguments.h"
 #include "experiments/cli/commands.h"
 
@@ -11,15 +14,18 @@ namespace {
 
 struct SceneArguments {
     std::string scene;
-    std::vector<std::string> assignments;
+    std::vector<std::string> assignments, target;
     bool info = false, json = false;
 };
 
-void printScene(const SceneArguments& a) {
-    if (!a.info) fail(ExitCode::Usage, "expected ulam scene SCENE --info");
-    auto [document, folder] = sceneArgument(a.scene);
-    document.applyOverrides(a.assignments);
-    const SceneDescription description = SceneDescription::fromNode(document.root(), folder);
+void exportScene(const SceneDescription& description, const std::string& format, const std::string& folder) {
+    if (format != "mitsuba3") fail(ExitCode::Usage, "expected --export mitsuba3 DIR, found {}", inQuotes(format));
+    for (const std::string& leftOut : exportMitsuba3(description, folder))
+        fmt::print(stderr, "left out: {}\n", leftOut);
+    fmt::print("{}\n", (std::filesystem::path(folder) / ExportFolder::sceneFile).string());
+}
+
+void printScene(const SceneDescription& description, const SceneArguments& a) {
     const Scene scene = description.build();
     std::size_t triangles = 0;
     for (const Shape& shape : scene.shapes)
@@ -55,11 +61,23 @@ void printScene(const SceneArguments& a) {
     for (const std::string& warning : scene.warnings) fmt::print("warning    {}\n", warning);
 }
 
+void runScene(const SceneArguments& a) {
+    if (a.info == !a.target.empty())
+        fail(ExitCode::Usage, "expected ulam scene SCENE --info, or ulam scene SCENE --export mitsuba3 DIR");
+    auto [document, folder] = sceneArgument(a.scene);
+    document.applyOverrides(a.assignments);
+    const SceneDescription description = SceneDescription::fromNode(document.root(), folder);
+    if (a.info)
+        printScene(description, a);
+    else
+        exportScene(description, a.target[0], a.target[1]);
+}
+
 }  // namespace
 
 void addSceneCommand(CLI::App& app) {
     auto a = std::make_shared<SceneArguments>();
-    CLI::App& command = *app.add_subcommand("scene", "what is in a scene");
+    CLI::App& command = *app.add_subcommand("scene", "what is in a scene; write it for another renderer");
     command.add_option("scene", a->scene, "JSON file, generator (see: ulam list generators), or JSON")->required();
     command.add_option("--set", a->assignments, "KEY=VALUE in the scene's dictionary (repeatable)")
         ->type_name("PATH=VALUE")
@@ -67,7 +85,10 @@ void addSceneCommand(CLI::App& app) {
         ->allow_extra_args(false);
     command.add_flag("--info", a->info, "count what is in it");
     command.add_flag("--json", a->json, "as JSON, with the expanded dictionary");
-    command.callback([a] { printScene(*a); });
+    command.add_option("--export", a->target, "write the scene for Mitsuba 3 into a folder")
+        ->type_name("mitsuba3 DIR")
+        ->expected(2);
+    command.callback([a] { runScene(*a); });
 }
 
 }  // namespace ulam

@@ -10,6 +10,7 @@ import subprocess
 import tempfile
 import time
 import unittest
+import xml.etree.ElementTree
 
 ULAM = os.environ.get("ULAM", "build/release/ulam")
 
@@ -95,6 +96,9 @@ class Usage(CliTest):
         self.ulam("list", "smaplers", expect=2)
         self.ulam("render", "scene.json", "--sampler", "path", "--spp", 1, "-o", "out.png", expect=2)
         self.ulam("scene", "scene.json", expect=2)
+        self.ulam("scene", "scene.json", "--info", "--export", "mitsuba3", "out", expect=2)
+        self.ulam("scene", "scene.json", "--export", "mitsuba3", expect=2)
+        self.ulam("scene", "scene.json", "--export", "pbrt", "out", expect=2)
 
 
 class Render(CliTest):
@@ -191,6 +195,18 @@ class Describe(CliTest):
         info = json.loads(self.ulam("scene", "scene.json", "--info", "--json").stdout)
         self.assertEqual((info["width"], info["emitters"], len(info["hash"])), (16, 1, 64))
         self.assertIn("16 x 16", self.ulam("scene", "scene.json", "--info").stdout)
+
+    def test_a_scene_is_exported(self):
+        self.write("scene.json", dict(SCENE, integrator={"type": "path"}))
+        for _ in range(2):
+            done = self.ulam("scene", "scene.json", "--export", "mitsuba3", "out")
+            self.assertEqual(done.stdout, "out/scene.xml\n")
+            self.assertEqual(done.stderr, 'left out: "path" at /integrator\n')
+        shapes = xml.etree.ElementTree.parse(self.folder / "out/scene.xml").getroot().findall("shape")
+        self.assertEqual([shape.get("id") for shape in shapes], ["wall", "lamp"])
+        self.write("out/mine", {})
+        self.assertIn("out holds mine", self.ulam("scene", "scene.json", "--export", "mitsuba3", "out", expect=6).stderr)
+        self.ulam("scene", "scene.json", "--export", "mitsuba3", "scene.json/out", expect=6)
 
     def test_compare(self):
         self.render()

@@ -158,6 +158,26 @@ TEST_CASE("ply: vertices in two elements are refused") {
     CHECK(mentions(plyError(text), "two elements"));
 }
 
+TEST_CASE("ply: what is written is read back bit for bit") {
+    Random random({5, 6}, 0, 0);
+    for (const bool normals : {false, true})
+        for (const bool texcoords : {false, true}) {
+            Mesh mesh;
+            for (int i = 0; i < 300; ++i) {
+                const auto number = [&] { return float(std::ldexp(random() - 0.5, random.index(200) - 100)); };
+                mesh.positions.emplace_back(number(), number(), number());
+                if (normals) mesh.normals.emplace_back(number(), number(), number());
+                if (texcoords) mesh.texcoords.emplace_back(number(), number());
+                mesh.triangles.push_back({uint32_t(i), uint32_t(random.index(300)), 299});
+            }
+            const Mesh read = readPly(plyBytes(mesh), "a.ply");
+            CHECK(read.positions == mesh.positions);
+            CHECK(read.normals == mesh.normals);
+            CHECK(read.texcoords == mesh.texcoords);
+            CHECK(read.triangles == mesh.triangles);
+        }
+}
+
 TEST_CASE("damaged mesh files give a mesh or an error") {
     Random random({7, 8}, 0, 0);
     const std::string obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nf 1/1/1 2/1/1 3/1/1\n";

@@ -1,0 +1,79 @@
+#include "core/scene/export/export_folder.h"
+
+#include <unistd.h>
+
+#include "core/base/error.h"
+#include "core/base/file.h"
+
+namespace ulam {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void failToWrite(const fs::path& path, const std::error_code& error) {
+    fail(ExitCode::CannotWrite, "cannot write {}: {}", path.string(), error.message());
+}
+
+void makeFolder(const fs::path& folder) {
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (error) failToWrite(folder, error);
+}
+
+/// Fails where a folder holds what no export wrote.
+void checkReplaceable(const fs::path& folder) {
+    const fs::path scene = folder / ExportFolder::sceneFile;
+    const std::string text = fs::is_regular_file(scene) ? readFile(scene) : "";
+    const bool isExport = text.find(ExportFolder::mark) != std::string::npos;
+    for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+        const std::string name = entry.path().lexically_relative(folder).generic_string();
+        const bool known = fs::is_directory(entry.symlink_status()) || name == ExportFolder::sceneFile ||
+                           text.find(fmt::format("\"{}\"", name)) != std::string::npos;
+        if (!isExport || !known)
+            fail(ExitCode::CannotWrite, "{} holds {}, which no earlier export wrote; name an empty or a new folder",
+                 folder.string(), name);
+    }
+}
+
+}  // namespace
+
+ExportFolder::ExportFolder(const fs::path& place) {
+    std::error_code error;
+    place_ = fs::weakly_canonical(fs::absolute(place), error);
+    if (error) failToWrite(place, error);
+    if (!place_.has_filename()) place_ = place_.parent_path();
+    if (fs::exists(place_)) {
+        if (!fs::is_directory(place_)) failToWrite(place, std::make_error_code(std::errc::not_a_directory));
+        checkReplaceable(place_);
+    }
+    made_ = place_;
+    made_ += fmt::format(".ulam-{}.tmp", ::getpid());
+    makeFolder(made_);
+}
+
+ExportFolder::~ExportFolder() {
+    std::error_code ignored;
+    fs::remove_all(made_, ignored);
+}
+
+void ExportFolder::write(const std::string& name, std::string_view bytes) {
+    makeFolder((made_ / name).parent_path());
+    writeFileAtomically(made_ / name, bytes);
+}
+
+void ExportFolder::commit() {
+    std::error_code error;
+    const fs::path former = made_.string() + ".former";
+    const bool replaces = fs::exists(place_);
+    if (replaces) fs::rename(place_, former, error);
+    if (error) failToWrite(place_, error);
+    fs::rename(made_, place_, error);
+    if (error) {
+        std::error_code ignored;
+        if (replaces) fs::rename(former, place_, ignored);
+        failToWrite(place_, error);
+    }
+    fs::remove_all(former, error);
+}
+
+}  // namespace ulam

@@ -1,0 +1,251 @@
+#include "core/scene/export/mitsuba3.h"
+
+#include <algorithm>
+#include <map>
+#include <pugixml.hpp>
+#include <set>
+#include <sstream>
+
+#include "core/scene/export/export_folder.h"
+#include "core/scene/loading/context.h"
+#include "core/scene/loading/entries.h"
+#include "core/scene/loading/plugin_table.h"
+#include "core/scene/loading/sensors.h"
+#include "core/scene/loading/transform.h"
+#include "core/scene/mesh_io.h"
+
+namespace ulam {
+namespace {
+
+/// A plugin with the XML tag of its kind.
+struct TaggedPlugin {
+    const char* tag;
+    std::vector<ParameterInfo> parameters;
+};
+
+std::map<std::string, TaggedPlugin> taggedPlugins() {
+    std::map<std::string, TaggedPlugin> result;
+    for (const auto& [kind, tag] : {std::pair{PluginKind::Shapes, "shape"},
+                                    {PluginKind::Bsdfs, "bsdf"},
+                                    {PluginKind::Emitters, "emitter"},
+                                    {PluginKind::Textures, "texture"},
+                                    {PluginKind::Sensors, "sensor"},
+                                    {PluginKind::Films, "film"},
+                                    {PluginKind::Filters, "rfilter"}})
+        for (PluginInfo& plugin : scenePlugins(kind)) result[plugin.name] = {tag, std::move(plugin.parameters)};
+    return result;
+}
+
+/// Letters, digits, "_" and "-" only.
+std::string plain(std::string text) {
+    for (char& c : text)
+        if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-') c = '_';
+    return text;
+}
+
+/// Plain names, never the same twice.
+class UniqueNames {
+public:
+    std::string make(const std::string& name, const std::string& ending = "") {
+        // Mitsuba keeps ids that begin with "_" to itself.
+        std::string stem = plain(name);
+        if (stem.empty() || stem[0] == '_') stem.insert(0, 1, 'x');
+        std::string unique = stem + ending;
+        for (int i = 2; !taken_.insert(unique).second; ++i) unique = fmt::format("{}_{}{}", stem, i, ending);
+        return unique;
+    }
+    /// The name of a copy of a file, with its ending.
+    std::string makeFile(const std::filesystem::path& file) {
+        const std::string ending = file.extension().string();
+        return make((file.parent_path() / file.stem()).string(), ending.empty() ? "" : "." + plain(ending.substr(1)));
+    }
+
+private:
+    std::set<std::string> taken_;
+};
+
+/// Shortest decimals that read back as the same numbers.
+std::string decimals(const std::vector<double>& numbers) {
+    return fmt::format("{}", fmt::join(numbers, ", "));
+}
+
+std::string matrix(const Matrix4& m) {
+    std::vector<double> rows;
+    for (int row = 0; row < 4; ++row)
+        for (int column = 0; column < 4; ++column) rows.push_back(m[column][row]);
+    return fmt::format("{}", fmt::join(rows, " "));
+}
+
+pugi::xml_node appendProperty(pugi::xml_node parent, const char* tag, const std::string& name,
+                              const std::string& value) {
+    pugi::xml_node property = parent.append_child(tag);
+    property.append_attribute("name") = name.c_str();
+    property.append_attribute("value") = value.c_str();
+    return property;
+}
+
+class Exporter {
+public:
+    Exporter(const SceneDescription& description, const std::filesystem::path& folder)
+        : scene_(description.build()), filmSize_(description.filmSize()), folder_(folder) {
+        files_.folder = description.folder();
+        dictionary_ = withClearSensors(JsonNode(description.dictionary()));
+    }
+
+    std::vector<std::string> run();
+
+private:
+    void leaveOut(const JsonNode& node, std::string_view what) {
+        leftOut_.push_back(fmt::format("{} at {}", what, node.where()));
+    }
+    void entry(const JsonNode& node);
+    pugi::xml_node plugin(pugi::xml_node parent, const JsonNode& node);
+    void property(pugi::xml_node parent, const ParameterInfo& parameter, const JsonNode& value);
+    std::string copyFile(const JsonNode& filename, const char* tag);
+    void mesh(const JsonNode& node);
+    JsonNode withClearSensors(const JsonNode& dictionary) const;
+
+    const std::map<std::string, TaggedPlugin> plugins_ = taggedPlugins();
+    JsonNode dictionary_{};
+    Scene scene_;
+    FilmSize filmSize_;
+    ExportFolder folder_;
+    LoadContext files_;
+    std::map<std::string, std::string> ids_, copies_;  // by name of an entry, by file name in the scene
+    UniqueNames idNames_, fileNames_;
+    pugi::xml_document document_;
+    pugi::xml_node root_;
+    std::vector<std::string> leftOut_;
+};
+
+std::string Exporter::copyFile(const JsonNode& filename, const char* tag) {
+    const auto [copy, isNew] = copies_.try_emplace(filename.string());
+    if (isNew) {
+        copy->second = fmt::format("{}/{}", std::string_view(tag) == "shape" ? "meshes" : "textures",
+                                   fileNames_.makeFile(filename.string()));
+        folder_.write(copy->second, files_.read(filename));
+    }
+    return copy->second;
+}
+
+void Exporter::property(pugi::xml_node parent, const ParameterInfo& parameter, const JsonNode& value) {
+    const std::string& name = parameter.name;
+    if (value.isNull()) return;
+    if (isPlugin(value) && pluginName(value) != "rgb") {
+        plugin(parent, value).append_attribute("name") = name.c_str();
+    } else if (parameter.type == "spectrum" || value.isObject()) {
+        const Spectrum c = parseSpectrum(value);
+        appendProperty(parent, "rgb", name, decimals({c.x, c.y, c.z}));
+    } else if (name.starts_with("to_")) {
+        pugi::xml_node transform = parent.append_child("transform");
+        transform.append_attribute("name") = name.c_str();
+        transform.append_child("matrix").append_attribute("value") = matrix(parseTransform(value)).c_str();
+    } else if (value.isArray()) {
+        const char* tag = parameter.type != "json" ? "rgb" : name == "direction" ? "vector" : "point";
+        appendProperty(parent, tag, name, decimals(value.numbers(3)));
+    } else if (name == "filename") {
+        appendProperty(parent, "string", name, copyFile(value, parent.name()));
+    } else if (value.isString()) {
+        appendProperty(parent, "string", name, value.string());
+    } else if (value.isBoolean()) {
+        appendProperty(parent, "boolean", name, value.boolean() ? "true" : "false");
+    } else if (parameter.type == "integer") {
+        appendProperty(parent, "integer", name, fmt::format("{}", value.integer()));
+    } else {
+        appendProperty(parent, "float", name, decimals({value.number()}));
+    }
+}
+
+pugi::xml_node Exporter::plugin(pugi::xml_node parent, const JsonNode& node) {
+    if (pluginName(node) == "ref") {
+        pugi::xml_node reference = parent.append_child("ref");
+        reference.append_attribute("id") = ids_.at(node.at("id").string()).c_str();
+        return reference;
+    }
+    const TaggedPlugin& known = plugins_.at(pluginName(node));
+    pugi::xml_node xml = parent.append_child(known.tag);
+    xml.append_attribute("type") = pluginName(node).c_str();
+    for (const auto& [key, member] : node.members()) {
+        if (key == "type" || key == "id") continue;
+        const auto parameter = std::find_if(known.parameters.begin(), known.parameters.end(),
+                                            [&, &name = key](const ParameterInfo& p) { return p.name == name; });
+        if (parameter != known.parameters.end())
+            property(xml, *parameter, member);
+        else if (isPlugin(member) && (pluginName(member) == "ref" || plugins_.contains(pluginName(member))))
+            plugin(xml, member);  // without a name: its kind says what it is for, its place which one it is
+        else
+            leaveOut(member, fmt::format("{} of {}", inQuotes(key), inQuotes(pluginName(node))));
+    }
+    return xml;
+}
+
+/// `mesh` is Ulam's own.
+void Exporter::mesh(const JsonNode& node) {
+    const auto shape =
+        std::find_if(scene_.shapes.begin(), scene_.shapes.end(), [&](const Shape& s) { return s.id == node.key(); });
+    const Mesh& loaded = std::get<Mesh>(shape->geometry);
+    const std::string& id = ids_.at(entryName(node));
+    const std::string file = "meshes/" + fileNames_.make(id, ".ply");
+    folder_.write(file, plyBytes(loaded));
+    Json ply = node.json();
+    for (const ParameterInfo& parameter : plugins_.at("mesh").parameters) ply.erase(parameter.name);
+    ply["type"] = "ply";
+    pugi::xml_node xml = plugin(root_, JsonNode(ply));
+    xml.append_attribute("id") = id.c_str();
+    appendProperty(xml, "string", "filename", file);
+    if (loaded.normals.empty()) appendProperty(xml, "boolean", "face_normals", "true");
+}
+
+/// The dictionary with the defaults written out that Mitsuba does not share.
+JsonNode Exporter::withClearSensors(const JsonNode& dictionary) const {
+    Json result = dictionary.json();
+    for (const JsonNode& node : entriesOf(dictionary)) {
+        if (!contains(scenePlugins(PluginKind::Sensors), pluginName(node))) continue;
+        Json& sensor = result[node.key()];
+        if (sensor.value("fov", 0.0) == 0) sensor.erase("fov");
+        // Mitsuba leaves out what is too near or too far, so let there be nothing.
+        const auto toWorld = node.find("to_world");
+        const Matrix4 m = toWorld ? parseTransform(*toWorld) : Matrix4();
+        const BoundingSphere& bounds = scene_.bounds();
+        const double reach = (Vec3d(m[3][0], m[3][1], m[3][2]) - Vec3d(bounds.center)).length() + bounds.radius;
+        sensor["far_clip"] = reach > 0 ? 1.01 * reach : 1.0;
+        sensor["near_clip"] = 1e-6 * sensor["far_clip"].get<double>();
+        // Without a size of its own a crop ends at the film's edge.
+        for (const JsonNode& nested : nestedPlugins(node, plugins_.at(pluginName(node)).parameters)) {
+            if (!contains(scenePlugins(PluginKind::Films), pluginName(nested))) continue;
+            sensor[nested.key()]["crop_width"] = filmSize_.cropWidth;
+            sensor[nested.key()]["crop_height"] = filmSize_.cropHeight;
+        }
+    }
+    return JsonNode(std::move(result));
+}
+
+void Exporter::entry(const JsonNode& node) {
+    const std::string& type = pluginName(node);
+    const auto known = plugins_.find(type);
+    if (noteIfUnused(node, files_) || known == plugins_.end()) return leaveOut(node, inQuotes(type));
+    if (type == "mesh") return mesh(node);
+    plugin(root_, node).append_attribute("id") = ids_.at(entryName(node)).c_str();
+}
+
+std::vector<std::string> Exporter::run() {
+    document_.append_child(pugi::node_comment).set_value(ExportFolder::mark);
+    root_ = document_.append_child("scene");
+    root_.append_attribute("version") = "3.0.0";
+    const std::vector<JsonNode> entries = entriesOf(dictionary_);
+    for (const JsonNode& node : entries) ids_[entryName(node)] = idNames_.make(entryName(node));
+    for (const JsonNode& node : entries) entry(node);
+    std::ostringstream text;
+    document_.save(text, "  ");
+    folder_.write(ExportFolder::sceneFile, text.str());
+    folder_.commit();
+    return leftOut_;
+}
+
+}  // namespace
+
+std::vector<std::string> exportMitsuba3(const SceneDescription& description, const std::filesystem::path& folder) {
+    return Exporter(description, folder).run();
+}
+
+}  // namespace ulam

@@ -1,0 +1,16 @@
+#pragma once
+// Scenes for Mitsuba 3: its XML, with meshes as PLY files.
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/scene/load.h"
+
+namespace ulam {
+
+/// Writes scene.xml, meshes/ and textures/ into a folder, which is made, or replaced where it holds an earlier export
+/// (see ExportFolder). Files that the scene names are copied. Returns a line for everything that was left out.
+std::vector<std::string> exportMitsuba3(const SceneDescription& description, const std::filesystem::path& folder);
+
+}  // namespace ulam

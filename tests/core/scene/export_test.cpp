@@ -1,0 +1,188 @@
+#include <pugixml.hpp>
+
+#include "core/base/file.h"
+#include "core/scene/export/mitsuba3.h"
+#include "core/scene/mesh_io.h"
+#include "tests/core/config/error_of.h"
+#include "tests/core/scene/load_text.h"
+
+using namespace ulam;
+namespace fs = std::filesystem;
+
+namespace {
+
+const char* const kTriangle =
+    "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+    "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+
+/// An exported scene and its XML.
+struct Exported {
+    SceneFolder files{"export_test"};
+    fs::path folder = files.path / "out";
+    std::vector<std::string> leftOut;
+    pugi::xml_document xml;
+
+    explicit Exported(const std::string& text) {
+        files.write("triangle.ply", kTriangle);
+        leftOut = exportMitsuba3(describeText(text, files.path), folder);
+        REQUIRE(xml.load_file((folder / "scene.xml").c_str()));
+    }
+
+    pugi::xml_node find(const std::string& xpath) const {
+        const auto found = xml.select_nodes(("/scene/" + xpath).c_str());
+        INFO(xpath);
+        REQUIRE(found.size() == 1);
+        return found.first().node();
+    }
+    std::string value(const std::string& xpath) const { return find(xpath).attribute("value").value(); }
+};
+
+/// Everything below a folder, with the bytes of its files.
+std::map<std::string, std::string> contentOf(const fs::path& folder) {
+    std::map<std::string, std::string> content;
+    for (const auto& entry : fs::recursive_directory_iterator(folder))
+        content[entry.path().lexically_relative(folder)] = entry.is_regular_file() ? readFile(entry.path()) : "";
+    return content;
+}
+
+}  // namespace
+
+TEST_CASE("export: every kind of parameter becomes Mitsuba's element for it") {
+    const Exported e(sceneWith(R"(
+        "ball": {"type": "sphere", "center": [1, 2.5, -3], "radius": 0.30000000000000004, "flip_normals": true,
+                 "to_world": [{"type": "scale", "value": 2}, {"type": "translate", "value": [1, 2, 3]}],
+                 "bsdf": {"type": "dielectric", "int_ior": "bk7", "ext_ior": 1.25, "specular_reflectance": 0.75}},
+        "wall": {"type": "rectangle",
+                 "emitter": {"type": "area", "radiance": {"type": "rgb", "value": [1e-7, 2, 1e22]}}}
+    )"));
+    CHECK(e.leftOut.empty());
+    CHECK(std::string(e.find(".").attribute("version").value()) == "3.0.0");
+    CHECK(e.value("shape[@type='sphere' and @id='ball']/point[@name='center']") == "1, 2.5, -3");
+    CHECK(e.value("shape/float[@name='radius']") == "0.30000000000000004");
+    CHECK(e.value("shape/boolean[@name='flip_normals']") == "true");
+    CHECK(e.value("shape/transform[@name='to_world']/matrix") == "2 0 0 1 0 2 0 2 0 0 2 3 0 0 0 1");
+    CHECK(e.value("shape/bsdf[@type='dielectric']/string[@name='int_ior']") == "bk7");
+    CHECK(e.value("shape/bsdf/float[@name='ext_ior']") == "1.25");
+    CHECK(e.value("shape/bsdf/rgb[@name='specular_reflectance']") == "0.75, 0.75, 0.75");
+    CHECK(e.value("shape[@type='rectangle' and @id='wall']/emitter[@type='area']/rgb") == "1e-07, 2, 1e+22");
+    CHECK(std::string(e.find("emitter[@type='point']").attribute("id").value()) == "light");
+}
+
+TEST_CASE("export: references keep their targets, ids become plain and stay different") {
+    const Exported e(sceneWith(R"(
+        "a b": {"type": "diffuse", "reflectance": 0.1}, "a.b": {"type": "diffuse", "reflectance": 0.2},
+        "_": {"type": "diffuse", "id": "own", "reflectance": 0.3},
+        "two": {"type": "twosided", "z": {"type": "ref", "id": "a.b"}, "a": {"type": "ref", "id": "own"}},
+        "wall": {"type": "rectangle", "bsdf": {"type": "ref", "id": "a b"}}
+    )"));
+    const auto reflectanceOf = [&](const pugi::xml_node& reference) {
+        return e.value(fmt::format("bsdf[@id='{}']/rgb", reference.attribute("id").value()));
+    };
+    CHECK(reflectanceOf(e.find("shape/ref")) == "0.1, 0.1, 0.1");
+    CHECK(reflectanceOf(e.find("bsdf/ref[1]")) == "0.2, 0.2, 0.2");
+    CHECK(reflectanceOf(e.find("bsdf/ref[2]")) == "0.3, 0.3, 0.3");
+    for (const auto& plugin : e.find(".").children())
+        CHECK(std::string(plugin.attribute("id").value()).find_first_of(" ._") != 0);
+}
+
+TEST_CASE("export: inline meshes become files, files are copied") {
+    const Exported e(sceneWith(R"(
+        "flat": {"type": "mesh", "positions": [0,0,0, 1,0,0, 0,1,0, 5,5,5], "triangles": [0,1,2, 0,1,1],
+                 "bsdf": {"type": "diffuse"}},
+        "smooth": {"type": "mesh", "positions": [0,0,0, 1,0,0, 0,1,0], "triangles": [0,2,1],
+                   "normals": [0,0,1,0,0,1,0,0,1]},
+        "one": {"type": "ply", "filename": "triangle.ply"},
+        "two": {"type": "ply", "filename": "triangle.ply", "face_normals": true}
+    )"));
+    const auto meshOf = [&](const std::string& id) {
+        const std::string file = e.value(fmt::format("shape[@type='ply' and @id='{}']/string[@name='filename']", id));
+        return readPly(readFile(e.folder / file), file);
+    };
+    const Mesh flat = meshOf("flat"), smooth = meshOf("smooth");
+    CHECK(flat.triangles.size() == 1);
+    CHECK(flat.positions.size() == 4);
+    CHECK(flat.normals.empty());
+    CHECK(e.value("shape[@id='flat']/boolean[@name='face_normals']") == "true");
+    CHECK(smooth.normals.size() == 3);
+    CHECK(smooth.triangles[0] == std::array<uint32_t, 3>{0, 1, 2});
+    CHECK(e.xml.select_nodes("/scene/shape[@id='smooth']/boolean").empty());
+    e.find("shape[@id='flat']/bsdf");
+    const std::string copy = e.value("shape[@id='one']/string");
+    CHECK(e.value("shape[@id='two']/string") == copy);
+    CHECK(readFile(e.folder / copy) == kTriangle);
+    CHECK(!fs::is_symlink(e.folder / copy));
+}
+
+TEST_CASE("export: the sensor's defaults that Mitsuba does not share") {
+    const Exported e(R"({"type": "scene", "light": {"type": "point"},
+        "ball": {"type": "sphere", "center": [0, 0, 2e5]},
+        "camera": {"type": "perspective", "fov": 0, "near_clip": 1,
+                   "to_world": [{"type": "translate", "value": [0, 0, 1]}],
+                   "film": {"type": "hdrfilm", "width": 40, "height": 30, "crop_offset_x": 8,
+                            "rfilter": {"type": "tent", "radius": 2}}}})");
+    CHECK(e.xml.select_nodes("//float[@name='fov']").empty());
+    CHECK(std::stod(e.value("sensor/float[@name='far_clip']")) > 2e5);
+    CHECK(std::stod(e.value("sensor/float[@name='near_clip']")) < 1);
+    CHECK(e.value("sensor/film/integer[@name='width']") == "40");
+    CHECK(e.value("sensor/film/integer[@name='crop_width']") == "32");
+    CHECK(e.value("sensor/film/integer[@name='crop_height']") == "30");
+    CHECK(e.value("sensor/film/rfilter[@type='tent']/float") == "2");
+}
+
+TEST_CASE("export: what has no meaning here is named, not dropped") {
+    const Exported e(R"({"type": "scene", "light": {"type": "point"}, "integrator": {"type": "path", "max_depth": 8},
+        "sensor": {"type": "perspective", "sampler": {"type": "independent"},
+                   "film": {"type": "hdrfilm", "pixel_format": "rgb"}}})");
+    REQUIRE(e.leftOut.size() == 3);
+    CHECK(e.leftOut[0] == R"("path" at /integrator)");
+    CHECK(e.leftOut[1] == R"("sampler" of "perspective" at /sensor/sampler)");
+    CHECK(e.leftOut[2] == R"("pixel_format" of "hdrfilm" at /sensor/film/pixel_format)");
+}
+
+TEST_CASE("export: an earlier export is replaced, other people's files are not") {
+    const SceneFolder files("export_folder");
+    const fs::path folder = files.path / "deep" / "out";
+    const auto exportWith = [&](const std::string& entries) {
+        return errorOf([&] { exportMitsuba3(describeText(sceneWith(entries)), folder); });
+    };
+    const std::string mesh = R"({"type": "mesh", "positions": [0,0,0, 1,0,0, 0,1,0], "triangles": [0,1,2]})";
+    REQUIRE(exportWith("\"old\": " + mesh).code == ExitCode::Done);
+    REQUIRE(exportWith("\"new\": " + mesh).code == ExitCode::Done);
+    const auto exported = contentOf(folder);
+    CHECK(exported.size() == 3);
+    CHECK(exported.contains("meshes/new.ply"));
+
+    SECTION("a scene that cannot be loaded leaves it alone") {
+        CHECK(exportWith(R"("bad": {"type": "ply", "filename": "missing.ply"})").code == ExitCode::InputMissing);
+        CHECK(contentOf(folder) == exported);
+    }
+    SECTION("a file that no export wrote stays") {
+        for (const char* name : {"image.exr", "meshes/mine.ply"}) {
+            writeFileAtomically(folder / name, "mine");
+            const Complaint complaint = exportWith("\"new\": " + mesh);
+            CHECK(complaint.code == ExitCode::CannotWrite);
+            CHECK(complaint.has(name));
+            CHECK(readFile(folder / name) == "mine");
+            fs::remove(folder / name);
+        }
+    }
+    SECTION("a scene by somebody else stays") {
+        writeFileAtomically(folder / "scene.xml", R"(<scene><string value="meshes/new.ply"/></scene>)");
+        CHECK(exportWith("").code == ExitCode::CannotWrite);
+    }
+    SECTION("so does a file of that name") {
+        fs::remove_all(folder);
+        writeFileAtomically(folder, "mine");
+        CHECK(exportWith("").code == ExitCode::CannotWrite);
+        CHECK(readFile(folder) == "mine");
+    }
+    SECTION("an empty folder and a link to one are filled") {
+        fs::remove_all(folder);
+        fs::create_directory(files.path / "real");
+        fs::create_directory_symlink(files.path / "real", folder);
+        CHECK(exportWith("").code == ExitCode::Done);
+        CHECK(fs::is_symlink(folder));
+        CHECK(fs::exists(files.path / "real" / "scene.xml"));
+    }
+    CHECK(std::distance(fs::directory_iterator(folder.parent_path()), {}) == 1);  // nothing temporary is left
+}
