@@ -57,7 +57,8 @@ public:
     /// The name of a copy of a file, with its ending.
     std::string makeFile(const std::filesystem::path& file) {
         const std::string ending = file.extension().string();
-        return make((file.parent_path() / file.stem()).string(), ending.empty() ? "" : "." + plain(ending.substr(1)));
+        return make((file.parent_path() / file.stem()).string(),
+                    ending.empty() ? "" : fmt::format(".{}", plain(ending.substr(1))));
     }
 
 private:
@@ -185,7 +186,7 @@ void Exporter::mesh(const JsonNode& node) {
         std::find_if(scene_.shapes.begin(), scene_.shapes.end(), [&](const Shape& s) { return s.id == node.key(); });
     const Mesh& loaded = std::get<Mesh>(shape->geometry);
     const std::string& id = ids_.at(entryName(node));
-    const std::string file = "meshes/" + fileNames_.make(id, ".ply");
+    const std::string file = fmt::format("meshes/{}", fileNames_.make(id, ".ply"));
     folder_.write(file, plyBytes(loaded));
     Json ply = node.json();
     for (const ParameterInfo& parameter : plugins_.at("mesh").parameters) ply.erase(parameter.name);
