@@ -22,28 +22,38 @@ std::vector<double> tileMeans(const Image& image) {
 
 }  // namespace
 
-TiledEstimate renderTiled(const audit::AuditScene& scene, const Json& sampler, const Budget& budget, int runs,
-                          uint64_t seed, uint64_t cell, int threads) {
+void TiledRuns::add(const Image& image) {
+    const std::vector<double> means = tileMeans(image);
+    tiles_.resize(means.size());
+    double sum = 0;
+    for (size_t i = 0; i < means.size(); ++i) tiles_[i].push_back(means[i]);
+    for (size_t i = 0; i < means.size(); i += 3) sum += luminance(Spectrum(means[i], means[i + 1], means[i + 2]));
+    energy_.push_back(3 * sum / double(means.size()));
+}
+
+TiledEstimate TiledRuns::estimate() const {
     TiledEstimate estimate;
-    std::vector<std::vector<double>> tiles;
-    std::vector<double> energy;
+    for (const auto& values : tiles_) estimate.tiles.push_back(statistics::estimateMean(values));
+    estimate.energy = statistics::estimateMean(energy_);
+    return estimate;
+}
+
+TiledEstimate renderTiled(const Scene& scene, const Json& sampler, const Budget& budget, int runs, uint64_t seed,
+                          uint64_t cell, int threads) {
+    TiledRuns tiled;
+    std::vector<std::string> biasLedger;
     const auto made = Registry<Sampler>::instance().create(JsonNode(sampler));
     for (int r = 0; r < runs; ++r) {
         RenderOptions options;
         options.budget = budget;
         options.key = makeKey(seed, cell, uint64_t(r));
         options.threads = threads;
-        const RenderResult result = render(scene.scene, *made, options);
-        const std::vector<double> means = tileMeans(result.image);
-        tiles.resize(means.size());
-        double sum = 0;
-        for (size_t i = 0; i < means.size(); ++i) tiles[i].push_back(means[i]);
-        for (size_t i = 0; i < means.size(); i += 3) sum += luminance(Spectrum(means[i], means[i + 1], means[i + 2]));
-        energy.push_back(3 * sum / double(means.size()));
-        estimate.biasLedger = result.statistics.biasLedger;
+        const RenderResult result = render(scene, *made, options);
+        tiled.add(result.image);
+        biasLedger = result.statistics.biasLedger;
     }
-    for (const auto& values : tiles) estimate.tiles.push_back(statistics::estimateMean(values));
-    estimate.energy = statistics::estimateMean(energy);
+    TiledEstimate estimate = tiled.estimate();
+    estimate.biasLedger = std::move(biasLedger);
     return estimate;
 }
 

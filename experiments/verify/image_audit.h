@@ -18,9 +18,20 @@ struct TiledEstimate {
     std::vector<std::string> biasLedger;          ///< of the runs
 };
 
+/// Images of independent runs, of whatever renderer; their sides are multiples of 8 pixels.
+class TiledRuns {
+public:
+    void add(const Image& image);
+    TiledEstimate estimate() const;
+
+private:
+    std::vector<std::vector<double>> tiles_;
+    std::vector<double> energy_;
+};
+
 /// Independent runs of a sampler, each with the budget; `seed` and `cell` choose their random numbers.
-TiledEstimate renderTiled(const audit::AuditScene& scene, const Json& sampler, const Budget& budget, int runs,
-                          uint64_t seed, uint64_t cell, int threads);
+TiledEstimate renderTiled(const Scene& scene, const Json& sampler, const Budget& budget, int runs, uint64_t seed,
+                          uint64_t cell, int threads);
 
 struct ImageComparison {
     std::string place;       ///< for messages

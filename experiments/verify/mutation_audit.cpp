@@ -270,7 +270,7 @@ private:
                 budget.mutations = mutations;
                 const std::string text = fmt::format("{} by {}, {}", place.scene->name, onPaths ? "mlt" : "pssmlt",
                                                      mixed ? "mixed" : "alone");
-                const TiledEstimate runs = renderTiled(*place.scene, config, budget, work_.runs, settings_.seed,
+                const TiledEstimate runs = renderTiled(place.scene->scene, config, budget, work_.runs, settings_.seed,
                                                        cellOf(name_ + text), settings_.threads);
                 comparisons.push_back(compare(text, runs, references_(*place.scene)));
             }

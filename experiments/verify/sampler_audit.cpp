@@ -29,7 +29,7 @@ std::string judge(const std::string& sampler, const audit::AuditScene& scene, co
     (chains ? budget.mutations : budget.spp) = chains ? work.pathMutations : work.samplesPerPixel;
     const auto render = [&](double factor, int runs, const char* part) {
         if (chains) config["bootstrap"] = std::llround(std::max(1000.0, work.bootstrap * factor));
-        return renderTiled(scene, config, scaled(budget, factor), runs, settings.seed,
+        return renderTiled(scene.scene, config, scaled(budget, factor), runs, settings.seed,
                            cellOf(sampler + scene.name + part), settings.threads);
     };
     TiledEstimate pilot;

@@ -38,7 +38,7 @@ const TiledEstimate& References::operator()(const audit::AuditScene& scene) {
     if (place != made_.end()) return place->second;
     Budget budget;
     budget.spp = work_.samplesPerPixel;
-    return made_[scene.name] = renderTiled(scene, samplerConfig("bdpt", scene), budget, work_.runs, seed_,
+    return made_[scene.name] = renderTiled(scene.scene, samplerConfig("bdpt", scene), budget, work_.runs, seed_,
                                            cellOf("reference " + scene.name), threads_);
 }
 

@@ -26,8 +26,9 @@ void checkShortRuns(const Json& sampler, double mutations, int runs, double shar
     Budget reference, budget;
     reference.spp = 256;
     budget.mutations = mutations;
-    const auto truth = verify::renderTiled(diffuseScene(), withLimits({{"type", "bdpt"}}), reference, 16, 1, 1, 2);
-    const auto found = verify::renderTiled(diffuseScene(), withLimits(sampler), budget, runs, 1, 2, 1);
+    const Scene& scene = diffuseScene().scene;
+    const auto truth = verify::renderTiled(scene, withLimits({{"type", "bdpt"}}), reference, 16, 1, 1, 2);
+    const auto found = verify::renderTiled(scene, withLimits(sampler), budget, runs, 1, 2, 1);
     const verify::ImageComparison c = verify::compare("short runs", found, truth);
     const auto adjusted = statistics::holmAdjusted(c.p);
     CAPTURE(c.energyShift, c.energyWidth);

@@ -210,7 +210,7 @@ JsonNode Exporter::withClearSensors(const JsonNode& dictionary) const {
         const BoundingSphere& bounds = scene_.bounds();
         const double reach = (Vec3d(m[3][0], m[3][1], m[3][2]) - Vec3d(bounds.center)).length() + bounds.radius;
         sensor["far_clip"] = reach > 0 ? 1.01 * reach : 1.0;
-        sensor["near_clip"] = 1e-6 * sensor["far_clip"].get<double>();
+        sensor["near_clip"] = 1e-9 * sensor["far_clip"].get<double>();
         // Without a size of its own a crop ends at the film's edge.
         for (const JsonNode& nested : nestedPlugins(node, plugins_.at(pluginName(node)).parameters)) {
             if (!contains(scenePlugins(PluginKind::Films), pluginName(nested))) continue;

@@ -1,0 +1,191 @@
+// Exported scenes, rendered by Mitsuba 3, look as they do here. scenes/*.json: a scene, and optionally max_depth and
+// samplers. Tiles and total energy are judged as in the audit of images (experiments/verify): Holm at 1e-5 over all
+// tiles and channels of all scenes and samplers of a run, 99.999 % intervals of the energy. Fixed seeds.
+
+#include <chrono>
+#include <cstdlib>
+#include <iostream>
+
+#include "core/base/file.h"
+#include "core/base/sha256.h"
+#include "core/scene/export/mitsuba3.h"
+#include "experiments/verify/work.h"
+#include "tests/experiments/statistics/simulation.h"
+#include "tests/support/catch.h"
+
+using namespace ulam;
+namespace fs = std::filesystem;
+
+namespace {
+
+const fs::path kHere = "tests/mitsuba", kBuild = "build/mitsuba", kPython = kBuild / "venv/bin/python";
+
+constexpr int kRuns = 32, kThreads = 2;
+constexpr double kEnergyWidth = 0.003;  // largest half width of the energy interval
+// Of the difference's variance a third is left to Mitsuba, whose images serve all samplers. The factor of the standard
+// error is that of 99.999 % at 32 runs, and a reserve for pilots that see too little variance.
+constexpr double kDifferenceError = kEnergyWidth / (5.0 * 1.25);
+const double kMitsubaError = kDifferenceError * std::sqrt(1.0 / 3), kOwnError = kDifferenceError * std::sqrt(2.0 / 3);
+/// Sums in single precision: where an image has no variance, its last digits are no difference.
+constexpr double kRounding = 1e-6;
+
+struct TestScene {
+    int maxDepth = 5;
+    Json samplers{"path", "bdpt", "pssmlt", "mlt"};
+    JsonNode scene;
+    std::string name;
+
+    template <class V>
+    void describe(V& v) {
+        v("max_depth", maxDepth, {.help = "longest path in edges", .min = 1});
+        v("samplers", samplers, {.help = "by name, those that find all light of the scene"});
+        v("scene", scene, {.help = "dictionary; its film's sides are multiples of 8 pixels"});
+    }
+};
+
+std::vector<TestScene> testScenes() {
+    std::vector<TestScene> scenes;
+    for (const auto& entry : fs::directory_iterator(kHere / "scenes")) {
+        if (entry.path().extension() != ".json") continue;
+        scenes.push_back(parseParameters<TestScene>(JsonDocument::fromFile(entry.path()).root()));
+        scenes.back().name = entry.path().stem();
+    }
+    std::ranges::sort(scenes, {}, &TestScene::name);
+    return scenes;
+}
+
+/// Names and bytes of all files below a folder, in the order of their names.
+std::string contentOf(const fs::path& folder) {
+    std::map<std::string, std::string> files;
+    for (const auto& entry : fs::recursive_directory_iterator(folder))
+        if (entry.is_regular_file()) files[entry.path()] = readFile(entry.path());
+    std::string content;
+    for (const auto& [name, bytes] : files) content += fmt::format("{}\n{}\n{}", name, bytes.size(), bytes);
+    return content;
+}
+
+/// Mitsuba's images of an exported scene: kept by what they depend on, or rendered.
+std::string mitsubaRuns(const fs::path& folder, int maxDepth) {
+    const std::string options = fmt::format("max_depth={} runs={} error={}", maxDepth, kRuns, kMitsubaError);
+    const std::string key =
+        sha256(contentOf(folder) + options + readFile(kHere / "render.py") + readFile(kHere / "requirements.txt"));
+    const fs::path images = kBuild / "renders" / (key + ".f32");
+    fs::create_directories(images.parent_path());
+    if (!fs::exists(images)) {
+        const std::string command = fmt::format("{} {} {} {} {}", kPython.string(), (kHere / "render.py").string(),
+                                                (folder / "scene.xml").string(), images.string(), options);
+        INFO(command);
+        std::fflush(stdout);
+        REQUIRE(std::system(command.c_str()) == 0);
+    }
+    return readFile(images);
+}
+
+verify::TiledEstimate mitsubaEstimate(const TestScene& test, const SceneDescription& description) {
+    const fs::path folder = kBuild / "scenes" / test.name;
+    const std::vector<std::string> leftOut = exportMitsuba3(description, folder);
+    CAPTURE(leftOut);
+    CHECK(leftOut.empty());
+    const std::string bytes = mitsubaRuns(folder, test.maxDepth);
+    const FilmSize size = description.filmSize();
+    Image image(size.cropWidth, size.cropHeight);
+    const size_t imageBytes = image.pixels.size() * sizeof(Rgb);
+    REQUIRE(bytes.size() == imageBytes * kRuns);
+    verify::TiledRuns runs;
+    for (size_t r = 0; r < kRuns; ++r) {
+        std::memcpy(&image.pixels[0].x, bytes.data() + r * imageBytes, imageBytes);
+        runs.add(image);
+    }
+    verify::TiledEstimate estimate = runs.estimate();
+    for (auto& tile : estimate.tiles) tile.varianceOfMean += std::pow(kRounding * tile.mean, 2);
+    return estimate;
+}
+
+/// Enough work for the energy's standard error, by a pilot with other seeds.
+verify::TiledEstimate ownEstimate(const TestScene& test, const Scene& scene, const std::string& sampler) {
+    const bool chains = Registry<Sampler>::instance().create(JsonNode(Json{{"type", sampler}}))->isChainSampler();
+    const auto run = [&](double work, const char* part) {
+        Json config = {{"type", sampler}, {"max_depth", test.maxDepth}};
+        Budget budget;
+        // The energy of chains is that of their bootstrap; fewer steps do for the tiles.
+        (chains ? budget.mutations : budget.spp) = std::ceil(chains ? work / 2 : work);
+        if (chains) config["bootstrap"] = std::llround(work);
+        return verify::renderTiled(scene, config, budget, kRuns, 1, verify::cellOf(test.name + sampler + part),
+                                   kThreads);
+    };
+    const double pilotWork = chains ? 10'000 : 8;
+    const verify::TiledEstimate pilot = run(pilotWork, " pilot");
+    const double error = std::sqrt(pilot.energy.varianceOfMean) / pilot.energy.mean;
+    return run(pilotWork * std::max(1.0, std::pow(error / kOwnError, 2)), "");
+}
+
+class StopWatch {
+public:
+    /// Seconds since the last call.
+    double lap() {
+        const auto last = std::exchange(last_, std::chrono::steady_clock::now());
+        return std::chrono::duration<double>(last_ - last).count();
+    }
+
+private:
+    std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+verify::Finding judge(const std::vector<verify::ImageComparison>& comparisons) {
+    verify::Work work{};
+    work.runs = kRuns;
+    work.energyWidth = kEnergyWidth;
+    return verify::judgeImages(comparisons, work);
+}
+
+}  // namespace
+
+TEST_CASE("agreement: Mitsuba 3 renders exported scenes alike") {
+    if (!fs::exists(kPython)) {
+        // ctest takes this line for the sign of a test that was skipped.
+        std::cout << "not compared with Mitsuba 3: there is no " << kPython.string() << ", which tests/run makes\n";
+        return;
+    }
+    std::vector<verify::ImageComparison> comparisons;
+    for (const TestScene& test : testScenes()) {
+        const auto description = SceneDescription::fromNode(test.scene, kHere / "scenes");
+        const Scene scene = description.build();
+        StopWatch watch;
+        const verify::TiledEstimate reference = mitsubaEstimate(test, description);
+        fmt::print("{}: mean {:.5f}, {:.1f} s\n", test.name, reference.energy.mean, watch.lap());
+        for (const std::string sampler : test.samplers) {
+            const verify::TiledEstimate own = ownEstimate(test, scene, sampler);
+            INFO(test.name << " by " << sampler);
+            CHECK(own.biasLedger.empty());
+            comparisons.push_back(compare(fmt::format("{} by {}", test.name, sampler), own, reference));
+            const auto& c = comparisons.back();
+            fmt::print("    {:<8} energy {:+.3f} % (± {:.3f} %), smallest p {:.2g} of {}, {:.1f} s\n", sampler,
+                       100 * c.energyShift, 100 * c.energyWidth, *std::ranges::min_element(c.p), c.p.size(),
+                       watch.lap());
+        }
+    }
+    const verify::Finding finding = judge(comparisons);
+    fmt::print("{}\n", finding.summary);
+    CAPTURE(finding.details);
+    CHECK(finding.outcome == verify::Outcome::Passed);
+}
+
+TEST_CASE("agreement: whatever the noise, an energy that is 0.5 % off does not pass") {
+    const auto passes = [](double noise, double shift) {
+        return statistics::simulation::frequency(400, 1, [&](statistics::PhiloxStream& random) {
+            const auto runs = [&](double mean) {
+                verify::TiledRuns tiled;
+                for (const double x : statistics::simulation::normals(kRuns, random))
+                    tiled.add(Image(8, 8, Rgb(float(mean * (1 + x * noise * std::sqrt(kRuns / 2.0))))));
+                return tiled.estimate();
+            };
+            return judge({compare("made up", runs(1 + shift), runs(1))}).outcome == verify::Outcome::Passed;
+        });
+    };
+    for (const double noise : {0.3, 0.7, 1.0, 1.3, 2.0}) {
+        CAPTURE(noise);
+        CHECK(passes(noise * kDifferenceError, 0.005) < 0.01);
+        CHECK(passes(noise * kDifferenceError, -0.005) < 0.01);
+    }
+    CHECK(passes(kDifferenceError, 0) > 0.99);
+}
