@@ -126,6 +126,20 @@ Json shadingNormals() {
     return scene;
 }
 
+/// Microfacets of both distributions, coats, a pane and a ball that is not there.
+Json roughThings() {
+    Json scene = room();
+    scene["lamp"] = lamp();
+    scene["metal"] = ball({-0.55, 0.35, -0.3}, 0.35, {{"type", "roughconductor"}, {"distribution", "ggx"}, {"alpha_u", 0.1}, {"alpha_v", 0.4}, {"eta", {0.2, 0.9, 1.1}}, {"k", {3.9, 2.4, 2.2}}});
+    scene["frosted"] = ball({0.5, 0.35, 0.5}, 0.35, {{"type", "roughdielectric"}, {"alpha", 0.3}});
+    scene["coat"] = ball({0.5, 0.4, -0.4}, 0.35, {{"type", "plastic"}, {"diffuse_reflectance", {0.6, 0.3, 0.2}}, {"nonlinear", true}});
+    scene["rough coat"] = ball({-0.5, 1.1, -0.4}, 0.3, {{"type", "roughplastic"}, {"alpha", 0.2}});
+    scene["pane"] = wall(0.4, {0, 1, 0}, 25, {-0.3, 0.8, 0.9}, 0.5);
+    scene["pane"]["bsdf"] = {{"type", "thindielectric"}, {"specular_transmittance", {0.9, 1, 0.8}}};
+    scene["nothing"] = ball({0.3, 1.2, 0.7}, 0.3, {{"type", "null"}});
+    return scene;
+}
+
 /// A camera with a wide aperture looks through a cut-out sheet at what a spot and a lamp light.
 Json thinLens() {
     Json scene = room();
@@ -189,7 +203,7 @@ const std::vector<NamedScene>& pathScenes() {
         {"diffuse", diffuseRoom(), false, false},   {"glass_and_mirror", glassAndMirror(), true, false},
         {"point_light", pointLight(), true, false}, {"environment", environment(), true, true},
         {"many_lights", manyLights(), true, true},  {"shading_normals", shadingNormals(), true, false},
-        {"thin_lens", thinLens(), true, false},     {"sun_and_sky", sunAndSky(), true, true},
+        {"rough", roughThings(), true, false},      {"thin_lens", thinLens(), true, false},     {"sun_and_sky", sunAndSky(), true, true},
     };
     return scenes;
 }

@@ -123,6 +123,20 @@ Json throughLens() {
     return scene;
 }
 
+/// Rough metal, rough glass and a coat, in the light of a picture all around and of the sun.
+Json roughOutdoors() {
+    Json scene = outdoors();
+    scene.erase("lamp");
+    scene["sky"]["radiance"] = {0.2, 0.25, 0.3};
+    scene["sun"] = {{"type", "directional"}, {"direction", {0.5, -1, -0.7}}, {"irradiance", {2, 1.8, 1.5}}};
+    scene["solid"]["bsdf"] = {{"type", "roughconductor"}, {"alpha_u", 0.15}, {"alpha_v", 0.4}, {"distribution", "ggx"}};
+    scene["ball"]["bsdf"] = {{"type", "plastic"}, {"diffuse_reflectance", {0.6, 0.2, 0.1}}};
+    scene["frosted"] = sphere(-1.0, -0.25, 0.5, 0.45, {{"type", "roughdielectric"}, {"alpha", 0.3}});
+    scene["pane"] = shape("rectangle", {scale(0.6, 0.6, 1), rotate('y', 20), translate(0.5, 0.2, 1.5)}, {{"type", "thindielectric"}});
+    scene["tube"] = {{"type", "cylinder"}, {"p0", {-0.4, -0.55, 1.1}}, {"p1", {0.4, -0.55, 1.0}}, {"radius", 0.15}, {"bsdf", {{"type", "roughplastic"}, {"alpha", 0.3}}}};
+    return scene;
+}
+
 std::unique_ptr<const AuditScene> make(const char* name, const char* holds, Json dictionary) {
     Scene scene = SceneDescription::fromNode(JsonNode(dictionary), ".").build();
     return std::make_unique<const AuditScene>(name, holds, std::move(dictionary), std::move(scene), PathLimits{6, 3});
@@ -134,6 +148,7 @@ std::vector<std::unique_ptr<const AuditScene>> makeAll() {
     scenes.push_back(make("specular", "the box with a glass sphere and a mirror", specularBox()));
     scenes.push_back(make("outdoor", "point light, environment, smooth normals", outdoors()));
     scenes.push_back(make("lens", "the specular box through a thin lens, with a spot and a cut-out sheet", throughLens()));
+    scenes.push_back(make("rough", "rough metal and glass, coats, a pane, in the sun", roughOutdoors()));
     return scenes;
 }
 

@@ -1,6 +1,7 @@
 #include "core/scene/export/mitsuba3.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <pugixml.hpp>
 #include <set>
@@ -35,6 +36,9 @@ std::map<std::string, TaggedPlugin> taggedPlugins() {
         for (PluginInfo& plugin : scenePlugins(kind)) result[plugin.name] = {tag, std::move(plugin.parameters)};
     return result;
 }
+
+/// Parameters for which 0 stands here for what Mitsuba takes where they are not given.
+constexpr std::array kZeroIsDefault{"fov", "beam_width"};
 
 /// Letters, digits, "_" and "-" only.
 std::string plain(std::string text) {
@@ -132,6 +136,7 @@ std::string Exporter::copyFile(const JsonNode& filename, const char* tag) {
 void Exporter::property(pugi::xml_node parent, const ParameterInfo& parameter, const JsonNode& value) {
     const std::string& name = parameter.name;
     if (value.isNull()) return;
+    if (value.json() == 0 && std::ranges::find(kZeroIsDefault, name) != kZeroIsDefault.end()) return;
     if (isPlugin(value) && pluginName(value) != "rgb") {
         plugin(parent, value).append_attribute("name") = name.c_str();
     } else if (parameter.type == "spectrum" || value.isObject()) {
@@ -203,7 +208,6 @@ JsonNode Exporter::withClearSensors(const JsonNode& dictionary) const {
     for (const JsonNode& node : entriesOf(dictionary)) {
         if (!contains(scenePlugins(PluginKind::Sensors), pluginName(node))) continue;
         Json& sensor = result[node.key()];
-        if (sensor.value("fov", 0.0) == 0) sensor.erase("fov");
         // Mitsuba leaves out what is too near or too far, so let there be nothing.
         const auto toWorld = node.find("to_world");
         const Matrix4 m = toWorld ? parseTransform(*toWorld) : Matrix4();

@@ -48,6 +48,25 @@ PluginInfo infoOf(const char* name, const char* summary) {
     return info;
 }
 
+/// alpha, or both alpha_u and alpha_v.
+void checkRoughness(const JsonNode& node) {
+    const auto alpha = node.find("alpha"), u = node.find("alpha_u"), v = node.find("alpha_v");
+    if (alpha && (u || v)) (u ? *u : *v).fail("a roughness is alpha, or alpha_u and alpha_v, not both");
+    if (bool(u) != bool(v)) (u ? *u : *v).fail(fmt::format("alpha_u and alpha_v come together; {} is missing", u ? "alpha_v" : "alpha_u"));
+    for (const auto& given : {u, v})
+        if (given && given->isNumber() && given->number() < 1e-4) given->expected("a roughness from 0.0001 to 1", "a smooth BSDF has none");
+}
+
+/// Parameters that do not go together are refused at the BSDF's place.
+template <class B>
+B made(const typename B::Parameters& parameters, const JsonNode& node) {
+    try {
+        return B(parameters);
+    } catch (const Error& error) {
+        node.fail(error.what());
+    }
+}
+
 template <class B>
 Material readPlain(const JsonNode& node, PluginResolver& resolver) {
     const PluginInfo info = infoOf<B>(pluginName(node).c_str(), "");
@@ -65,7 +84,8 @@ Material readPlain(const JsonNode& node, PluginResolver& resolver) {
         elsewhere.push_back(parameter.name);
     }
     list.parse(node, elsewhere);
-    Coating coating{B(parameters), {}};
+    checkRoughness(node);
+    Coating coating{made<B>(parameters, node), {}};
     for (const TexturedParameter& t : textured) {
         int member = 0;
         auto bind = [&](const char* name, auto) {
@@ -132,6 +152,12 @@ const PluginTable<Material(const JsonNode&, PluginResolver&)>& table() {
                     {infoOf<Dielectric>("dielectric", "smooth interface of two transparent media"), readPlain<Dielectric>},
                     {infoOf<Diffuse>("diffuse", "Lambertian reflection"), readPlain<Diffuse>},
                     {maskInfo(), readMask},
+                    {infoOf<Null>("null", "nothing: light goes straight through"), readPlain<Null>},
+                    {infoOf<Plastic>("plastic", "smooth transparent coat over a diffuse base"), readPlain<Plastic>},
+                    {infoOf<RoughConductor>("roughconductor", "rough metal"), readPlain<RoughConductor>},
+                    {infoOf<RoughDielectric>("roughdielectric", "rough interface of two transparent media"), readPlain<RoughDielectric>},
+                    {infoOf<RoughPlastic>("roughplastic", "rough transparent coat over a diffuse base"), readPlain<RoughPlastic>},
+                    {infoOf<ThinDielectric>("thindielectric", "pane of glass without thickness"), readPlain<ThinDielectric>},
                     {{"twosided", "one nested BSDF for both sides, or one for the front and one for the back", {}, {}},
                      readTwosided},
                 });

@@ -52,6 +52,10 @@ TEST_CASE("export: every kind of parameter becomes Mitsuba's element for it") {
         "ball": {"type": "sphere", "center": [1, 2.5, -3], "radius": 0.30000000000000004, "flip_normals": true,
                  "to_world": [{"type": "scale", "value": 2}, {"type": "translate", "value": [1, 2, 3]}],
                  "bsdf": {"type": "dielectric", "int_ior": "bk7", "ext_ior": 1.25, "specular_reflectance": 0.75}},
+        "sun": {"type": "directional", "direction": [0, -1, 0]},
+        "lamp": {"type": "spot", "cutoff_angle": 20, "beam_width": 0},
+        "tiles": {"type": "disk", "bsdf": {"type": "mask", "bsdf": {"type": "diffuse"}, "opacity":
+                  {"type": "checkerboard", "color0": 1, "to_uv": [{"type": "scale", "value": 4}]}}},
         "wall": {"type": "rectangle",
                  "emitter": {"type": "area", "radiance": {"type": "rgb", "value": [1e-7, 2, 1e22]}}}
     )"));
@@ -66,6 +70,11 @@ TEST_CASE("export: every kind of parameter becomes Mitsuba's element for it") {
     CHECK(e.value("shape/bsdf/rgb[@name='specular_reflectance']") == "0.75, 0.75, 0.75");
     CHECK(e.value("shape[@type='rectangle' and @id='wall']/emitter[@type='area']/rgb") == "1e-07, 2, 1e+22");
     CHECK(std::string(e.find("emitter[@type='point']").attribute("id").value()) == "light");
+    CHECK(e.value("emitter[@type='directional']/vector[@name='direction']") == "0, -1, 0");
+    CHECK(e.value("emitter[@type='spot']/float[@name='cutoff_angle']") == "20");
+    CHECK(e.xml.select_nodes("//float[@name='beam_width']").empty());
+    CHECK(e.value("shape[@id='tiles']/bsdf[@type='mask']/texture[@type='checkerboard' and @name='opacity']/rgb") == "1, 1, 1");
+    CHECK(e.value("shape[@id='tiles']//transform[@name='to_uv']/matrix") == "4 0 0 0 0 4 0 0 0 0 4 0 0 0 0 1");
 }
 
 TEST_CASE("export: references keep their targets, ids become plain and stay different") {
