@@ -59,24 +59,45 @@ double roughReflectance(const MicrofacetDistribution& d, double ior, bool exteri
     return sum;
 }
 
-double roughDiffuseReflectanceFromInside(const MicrofacetDistribution& d, double ior) {
-    // The bend of Fresnel's reflectance at the critical angle is blurred over the width of α: nodes are dense there.
-    const double critical = criticalCosine(ior);
-    const auto integrand = [&](double s) {
-        const auto at = [&](double end) {
-            const double cosTheta = critical + (end - critical) * s * s * s;
-            return std::abs(end - critical) * 2 * cosTheta * roughReflectance(d, ior, false, cosTheta);
+// As above, with the refracted direction o below the surface. Every microfacet on w's side takes part: those tilted by less
+// than π/2 − θ at all azimuths.
+double roughTransmittance(const MicrofacetDistribution& d, double ior, double cosTheta) {
+    const double alpha = d.alphaU, sinTheta = std::sqrt(std::max(0.0, 1 - cosTheta * cosTheta));
+    const Vec3d w(sinTheta, 0, cosTheta);
+    const auto overAzimuth = [&](double t) {
+        const double r = std::tan(t), slope = alpha * r;
+        const auto integrand = [&](double phi) {
+            const Vec3d m = Vec3d(slope * std::cos(phi), slope * std::sin(phi), 1).normalized();
+            const double c = std::max(0.0, w.dot(m));
+            const Vec3d o = m * (c / ior - std::sqrt(1 - (1 - c * c) / (ior * ior))) - w / ior;
+            if (!(o.z < 0)) return 0.0;
+            return (1 - fresnelDielectric(c, ior, true)) * -o.z / d.projectedArea(-o) * d.visible(w, m) * m.z * m.z * m.z;
         };
-        return 3 * s * s * (at(0) + at(1));
+        const double end = std::acos(std::clamp(-cosTheta / (slope * sinTheta), -1.0, 1.0));
+        return 2 * alpha * alpha * r * (1 + r * r) * gauss<double, 15>::integrate(mapped(integrand, 0, end), 0.0, 1.0);
     };
-    return gauss<double, 25>::integrate(integrand, 0.0, 1.0);
+    const double last = 0.5 * kPi, full = std::atan2(cosTheta, alpha * sinTheta);
+    double sum = 0;
+    for (const auto& [a, b] : {std::pair(0.0, full), {full, last}})
+        if (a < b) sum += gauss_kronrod<double, 15>::integrate(mapped(overAzimuth, a, b), 0, 1, 5, 1e-5);
+    return sum;
+}
+
+double roughInternalReflectance(const MicrofacetDistribution& d, double ior) {
+    constexpr int kCosines = 64;
+    double sum = 0;
+    for (int i = 0; i < kCosines; ++i) {
+        const double cosTheta = 1e-6 + (1 - 1e-6) * i / (kCosines - 1);
+        sum += 2 * cosTheta * roughReflectance(d, ior, false, cosTheta);
+    }
+    return sum / kCosines;
 }
 
 RoughTransmittance::RoughTransmittance(const MicrofacetDistribution& distribution, double ior)
     : alpha_(distribution.alphaU), scale_((kNodes - 1) / std::log1p(1 / alpha_)) {
     for (int i = 0; i < kNodes; ++i) {
         const double cosTheta = std::min(1.0, alpha_ * std::expm1(i / scale_));
-        nodes_[size_t(i)] = float(1 - roughReflectance(distribution, ior, true, cosTheta));
+        nodes_[size_t(i)] = float(roughTransmittance(distribution, ior, cosTheta));
     }
 }
 
