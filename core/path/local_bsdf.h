@@ -10,7 +10,7 @@ namespace ulam {
 class LocalFrame {
 public:
     LocalFrame(const Frame& frame, bool mirrored) : frame_(frame), mirrored_(mirrored) {}
-    Vec3f toLocal(const Vec3f& w) const { return mirror(frame_.toLocal(w)); }
+    [[gnu::always_inline]] Vec3f toLocal(const Vec3f& w) const { return mirror(frame_.toLocal(w)); }
     Vec3f toWorld(const Vec3f& w) const { return frame_.toWorld(mirror(w)); }
 
 private:

@@ -7,7 +7,8 @@ namespace {
 
 /// f_s |n_s·w| = f̂_s |n_g·w| with w towards the light (Veach 1997, §5.3.2): f̂_s is what the three-point form with
 /// geometric cosines needs, in either direction of transport.
-double shadingCorrection(const Vertex& v, const Vec3f& toLight) {
+inline double shadingCorrection(const Vertex& v, const Vec3f& toLight) {
+    if (v.shadingNormal == v.normal) return 1;
     const float g = std::abs(dot(v.normal, toLight));
     return g > 0 ? std::abs(dot(v.shadingNormal, toLight)) / double(g) : 0;
 }

@@ -1,13 +1,12 @@
 #include "experiments/statistics/intervals.h"
 
 #include <cmath>
-#include <cstdlib>
-#include <string_view>
 #include <vector>
 
 #include "experiments/statistics/moments.h"
 #include "tests/experiments/statistics/simulation.h"
 #include "tests/support/catch.h"
+#include "tests/support/level.h"
 
 using namespace ulam::statistics;
 using namespace ulam::statistics::simulation;
@@ -46,8 +45,7 @@ TEST_CASE("the interval of a mean error covers 93 to 97 % below 32 replicates") 
 // True coverage is 93.8 % at 32 replicates and σ = 0.5, too close to the bound for few trials: the quick level allows
 // two standard errors.
 TEST_CASE("the bootstrap interval of a mean error covers 93 to 97 %") {
-    const char* level = std::getenv("ULAM_TEST_LEVEL");
-    if (level && std::string_view(level) == "full") {
+    if (ulam::fullLevel()) {
         const std::size_t n = GENERATE(32, 64);
         const double sigma = GENERATE(0.2, 0.5);
         CAPTURE(n, sigma);
