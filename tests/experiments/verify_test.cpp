@@ -73,12 +73,12 @@ TEST_CASE("What cannot be audited is said") {
 
 TEST_CASE("Samplers agree where they are unbiased, and are not judged where they say that they are not") {
     References references(smallWork(), 2, 2);
-    for (const char* sampler : {"path", "light"}) {
+    // Mirrors and glass are in three scenes, in two of them with a spot or the sun.
+    for (const auto& [sampler, notJudged] : {std::pair("path", 2u), {"light", 3u}}) {
         const SubjectReport report = auditSampler(sampler, {smallWork(), 2, 2, 2}, references);
         CAPTURE(sampler, report.findings.front().details);
         CHECK_FALSE(report.rejected());
-        const bool notJudged = !report.findings.front().details.empty();
-        CHECK(notJudged == (std::string(sampler) == "light"));
+        CHECK(report.findings.front().details.size() == notJudged);
     }
 }
 
