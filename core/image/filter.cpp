@@ -36,6 +36,22 @@ double ReconstructionFilter::operator()(double x) const {
     return 0;
 }
 
+double ReconstructionFilter::squareIntegral() const {
+    switch (type_) {
+        case Type::Box:
+            return 1;
+        case Type::Tent:
+            return 2 / (3 * radius_);
+        case Type::Gaussian: {
+            // The square of a bell is a bell of the √2-th width.
+            const double square = bellIntegral(radius_, stddev_ / std::numbers::sqrt2);
+            const double half = square - 2 * atRadius_ * bellIntegral(radius_, stddev_) + atRadius_ * atRadius_ * radius_;
+            return 2 * half * normalization_ * normalization_;
+        }
+    }
+    return 0;
+}
+
 double ReconstructionFilter::sample(double u) const {
     const double centred = u - 0.5, tail = std::abs(centred);
     switch (type_) {

@@ -42,6 +42,8 @@ public:
     float radius() const { return float(radius_); }
     /// One axis, at a distance from the pixel's centre.
     double operator()(double x) const;
+    /// ∫ h² over one axis: a pixel's variance from splats is that of a box, whose value is 1, times both axes' ∫ h².
+    double squareIntegral() const;
     /// An offset from the pixel's centre distributed as h.
     double sample(double u) const;
 

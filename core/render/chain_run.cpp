@@ -8,16 +8,21 @@
 namespace ulam {
 namespace {
 
-// Streams of random numbers beside the chains' own, which are numbered from 0.
-constexpr uint32_t kBootstrapStream = 0xf0000000u, kResamplingStream = 0xf0000001u, kShuffleStream = 0xf0000002u,
-                   kPilotStream = 0xf0000003u;
+// Streams of random numbers beside the chains' own, which are numbered from 0; trial chains have theirs above the first.
+constexpr uint32_t kTrialStream = 0xe0000000u, kBootstrapStream = 0xf0000000u, kResamplingStream = 0xf0000001u, kPilotStream = 0xf0000003u,
+                   kTrialStartStream = 0xf0000004u;
 // Timing every step would cost more than a cheap step.
 constexpr uint64_t kTimedEvery = 32;
 
-constexpr uint64_t kPilot = 10'000, kSmallestBootstrap = 20'000, kLargestBootstrap = 20'000'000;
-constexpr double kBootstrapShare = 0.1;
+// The pilot doubles until enough of its samples carried light, or until it has had its share of the budget.
+constexpr uint64_t kPilot = 10'000, kPilotHits = 32;
+constexpr double kPilotShare = 0.02;
+constexpr uint64_t kTrialChains = 64;  // each makes one chunk of steps
 
 bool neverStop(int) { return false; }
+
+using Clock = std::chrono::steady_clock;
+double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 }  // namespace
 
@@ -57,7 +62,7 @@ struct ChainRun::Worker : StepObserver {
         const double alpha = info.acceptance;
         const bool large = run.deposit_ == Deposit::Kelemen && run.mix_[size_t(info.mutation)].mutation->isLargeStep();
         pending += weight(x, 1 - alpha);
-        const double proposed = weight(y, alpha + (large ? run.pilotNormalization_ / run.normalization_ : 0));
+        const double proposed = weight(y, alpha + (large ? run.pilotNormalization_ / run.bootstrap_.mean : 0));
         const Vec2f jump = y.splats[0].raster - x.splats[0].raster;
         s.squaredJump += alpha * double(jump.length2());
         if (!info.accepted) {
@@ -115,109 +120,134 @@ struct ChainRun::Worker : StepObserver {
 
 ChainRun::ChainRun(const RunContext& context, const ChainParameters& parameters, const PathLimits& limits, MutationMix mix, Deposit deposit,
                    const TargetMaker& makeTarget)
-    : context_(context), parameters_(parameters), limits_(limits), mix_(std::move(mix)), deposit_(deposit) {
+    : context_(context),
+      parameters_(parameters),
+      limits_(limits),
+      mix_(std::move(mix)),
+      deposit_(deposit),
+      pilotNumbers_(context.key, kPilotStream),
+      bootstrapNumbers_(context.key, kBootstrapStream) {
     for (int i = 0; i < context.workers; ++i) workers_.push_back(std::make_unique<Worker>(*this, makeTarget()));
 }
 
 ChainRun::~ChainRun() = default;
 
 void ChainRun::prepare(const StopFunction& stop) {
-    if (deposit_ == Deposit::Kelemen || parameters_.bootstrap == 0) pilot(stop);
-    bootstrap(stop);
-    seedChains();
+    std::vector<double> pilot;
+    uint64_t count = uint64_t(parameters_.bootstrap);
+    if (count == 0) count = planBootstrap(stop, pilot);
+    if (deposit_ == Deposit::Kelemen) {
+        // As many samples as a repetition takes, which is told the size of the bootstrap and needs no plan.
+        const uint64_t first = std::min(kPilot, count);
+        weigh(pilotNumbers_, first, stop, pilot);
+        pilotNormalization_ = WeightMoments(std::span(pilot).first(std::min<size_t>(first, pilot.size()))).mean;
+    }
+    pilotSamples_ = pilot.size();
+    std::vector<double> weights;
+    weigh(bootstrapNumbers_, count, stop, weights);
+    bootstrap_ = WeightMoments(weights);
+    if (bootstrap_.mean > 0) return seedChains(weights);
+    if (weights.size() == count)  // and not stopped early
+        fail(ExitCode::InvalidConfig, "none of {} bidirectional samples carried light to the camera: is the camera inside a wall, or the light shut off?",
+             weights.size());
 }
 
-/// Weights of bidirectional samples [first, last), or of as many as were made until the stop.
-std::vector<double> ChainRun::weigh(uint32_t stream, uint64_t first, uint64_t last, const StopFunction& stop) {
-    std::vector<double> weights(last - first);
+/// Adds weights of bidirectional samples up to the `last`, or of as many as were made until the stop.
+void ChainRun::weigh(const BootstrapNumbers& numbers, uint64_t last, const StopFunction& stop, std::vector<double>& weights) {
+    const uint64_t first = weights.size();
+    if (first >= last) return;
+    weights.resize(last);
     std::atomic<uint64_t> notFinite = 0;
     const uint64_t end = forEachChunk(context_.workers, first, last, 256, stop, [&](int worker, uint64_t from, uint64_t to) {
         Target& target = *workers_[size_t(worker)]->target;
         for (uint64_t i = from; i < to; ++i) {
-            Random random(context_.key, stream, i);
-            double& w = weights[i - first];
-            w = target.bootstrapWeight(random);
-            if (!std::isfinite(w)) w = 0, ++notFinite;
+            weights[i] = numbers.with(i, [&](Random& random) { return target.bootstrapWeight(random); });
+            if (!std::isfinite(weights[i])) weights[i] = 0, ++notFinite;
         }
     });
-    weights.resize(end - first);
+    weights.resize(end);
     bootstrapNotFinite_ += notFinite;
-    return weights;
 }
 
-void ChainRun::pilot(const StopFunction& stop) {
-    const auto start = std::chrono::steady_clock::now();
-    const uint64_t count = parameters_.bootstrap > 0 ? std::min(kPilot, uint64_t(parameters_.bootstrap)) : kPilot;
-    const std::vector<double> weights = weigh(kPilotStream, 0, count, stop);
-    pilotSeconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    pilotSamples_ = weights.size();
-    for (const double w : weights) pilotNormalization_ += w / double(weights.size());
+/// Of the limit that is used up most; `units`: mutations that cost as much.
+double ChainRun::fractionOfBudget(const Cost& cost, double units) const {
+    auto fraction = [](double used, double expected) { return expected > 0 ? used / expected : 0; };
+    return std::max({fraction(cost.seconds, context_.expectedSeconds), fraction(cost.rays, context_.expectedRays),
+                     fraction(units, context_.expectedUnits)});
 }
 
-void ChainRun::bootstrap(const StopFunction& stop) {
-    uint64_t count = uint64_t(parameters_.bootstrap);
-    if (count == 0) {
-        double n = kBootstrapShare * context_.expectedUnits;
-        if (context_.expectedSeconds > 0) {
-            const double affordable = kBootstrapShare * context_.expectedSeconds / pilotSeconds_ * double(kPilot);
-            n = context_.expectedUnits > 0 ? std::min(n, affordable) : affordable;
-        }
-        count = uint64_t(std::clamp(n, double(kSmallestBootstrap), double(kLargestBootstrap)));
+/// Pilot samples and a few steps of trial chains tell how samples scatter and what samples and mutations cost.
+uint64_t ChainRun::planBootstrap(const StopFunction& stop, std::vector<double>& pilot) {
+    const auto start = Clock::now();
+    double seconds = 0;
+    for (uint64_t count = kPilot, hits = 0; hits < kPilotHits; count *= 2) {
+        weigh(pilotNumbers_, count, stop, pilot);
+        seconds = secondsSince(start);
+        hits = uint64_t(std::count_if(pilot.begin(), pilot.end(), [](double w) { return w > 0; }));
+        if (pilot.size() < count || fractionOfBudget({seconds, double(rays())}, double(count)) > kPilotShare) break;
     }
-    weights_ = weigh(kBootstrapStream, 0, count, stop);
-    double sum = 0, squares = 0;
-    for (double w : weights_) sum += w;
-    const double n = double(weights_.size());
-    normalization_ = n > 0 ? sum / n : 0;
-    for (double w : weights_) squares += (w - normalization_) * (w - normalization_);
-    normalizationStandardError_ = n > 1 ? std::sqrt(squares / (n * (n - 1))) : 0;
-    bootstrapSamples_ = weights_.size();
-    if (!(sum > 0) && weights_.size() == count)  // and not stopped early
-        fail(ExitCode::InvalidConfig, "none of {} bidirectional samples carried light to the camera: is the camera inside a wall, or the light shut off?",
-             weights_.size());
+    if (pilot.empty()) return uint64_t(SeedingPlan::kFewest);  // no time was left
+    const Cost sample{seconds / double(pilot.size()), double(rays()) / double(pilot.size())};
+    const WeightMoments moments(pilot);
+    const Cost mutation = moments.mean > 0 ? tryMutations(pilot) : sample;
+    const double mutationsPerSample = mutation.rays > 0 ? sample.rays / mutation.rays : 1;
+    const double square = context_.scene.filter.squareIntegral();
+    plan_.emplace(moments, SeedingTask{.sampleCost = fractionOfBudget(sample, mutationsPerSample),
+                                       .mutationCost = fractionOfBudget(mutation, 1),
+                                       .pixels = double(workers_[0]->film.pixels()) * square * square,
+                                       .chains = parameters_.chains});
+    return plan_->samples;
 }
 
-void ChainRun::seedChains() {
-    if (!(normalization_ > 0)) return;
-    // Systematic resampling: the n-th chain starts at the sample in which the running sum passes (n + offset) · step.
-    const size_t count = size_t(parameters_.chains);
-    std::vector<uint64_t> source(count);
-    const double step = normalization_ * double(weights_.size()) / double(count);
-    double next = Random(context_.key, kResamplingStream, 0)() * step, sum = 0;
-    size_t seeded = 0;
-    uint64_t lastPositive = 0;
-    for (uint64_t i = 0; i < weights_.size() && seeded < count; ++i) {
-        sum += weights_[i];
-        if (weights_[i] > 0) lastPositive = i;
-        while (seeded < count && next < sum) {
-            source[seeded++] = i;
-            next += step;
-        }
-    }
-    while (seeded < count) source[seeded++] = lastPositive;
-    weights_ = {};
-    // Each chain alone is drawn by weight only once their order is forgotten; without this the first chains, which get
-    // the last and incomplete round of work, would all come from the beginning of the bootstrap.
-    Random shuffle(context_.key, kShuffleStream, 0);
-    for (size_t i = count; i > 1; --i) std::swap(source[i - 1], source[std::min(i - 1, size_t(shuffle() * double(i)))]);
+/// Mean cost of a mutation, from short chains that start at pilot samples and leave nothing in the image.
+ChainRun::Cost ChainRun::tryMutations(std::span<const double> pilot) {
+    struct Blind : StepObserver {
+        void observe(const Chain&, const Proposal&, const StepInfo&) override {}
+    } blind;
+    Random random(context_.key, kTrialStartStream, 0);
+    const std::vector<Start> starts = drawStarts(pilot, kTrialChains, random);
+    std::vector<Chain> chains(kTrialChains);
+    auto forEachChain = [&](const auto& work) {
+        forEachChunk(context_.workers, 0, kTrialChains, 1, neverStop,
+                     [&](int worker, uint64_t c, uint64_t) { work(*workers_[size_t(worker)], chains[c], starts[c]); });
+    };
+    std::atomic<uint64_t> started = 0;
+    forEachChain([&](Worker& w, Chain& chain, const Start& start) {
+        chain.index = kTrialStream + uint32_t(&chain - chains.data());
+        started += startChain(w, pilotNumbers_, start, chain);
+    });
+    const uint64_t raysBefore = rays();
+    const auto before = Clock::now();
+    forEachChain([&](Worker& w, Chain& chain, const Start&) {
+        if (chain.x.splats.size() > 0)
+            for (uint64_t i = 0; i < chunk(); ++i) step(w, chain, blind);
+    });
+    const double steps = std::max(1.0, double(started * chunk()));
+    return {secondsSince(before) / steps, double(rays() - raysBefore) / steps};
+}
 
-    chains_.resize(count);
+/// False where rounding lost the start.
+bool ChainRun::startChain(Worker& w, const BootstrapNumbers& numbers, const Start& start, Chain& chain) {
+    if (!numbers.with(start.sample, [&](Random& random) { return w.target->seed(random, start.choice, chain.x); })) return false;
+    chain.feature = Worker::featureOf(chain.x);
+    w.kernel.enter(chain);
+    return true;
+}
+
+void ChainRun::seedChains(std::span<const double> weights) {
+    Random random(context_.key, kResamplingStream, 0);
+    const std::vector<Start> starts = drawStarts(weights, size_t(parameters_.chains), random);
+    chains_.resize(starts.size());
     std::atomic<uint64_t> lost = 0;
-    forEachChunk(context_.workers, 0, count, 16, neverStop, [&](int worker, uint64_t begin, uint64_t end) {
-        Worker& w = *workers_[size_t(worker)];
+    forEachChunk(context_.workers, 0, starts.size(), 16, neverStop, [&](int worker, uint64_t begin, uint64_t end) {
         for (uint64_t c = begin; c < end; ++c) {
             chains_[c] = std::make_unique<ChainSlot>();
             Chain& chain = chains_[c]->chain;
             chain.index = uint32_t(c);
-            Random random(context_.key, kBootstrapStream, source[c]);
-            const double choice = Random(context_.key, kResamplingStream, c + 1)();
-            if (!w.target->seed(random, choice, chain.x)) {
+            if (startChain(*workers_[size_t(worker)], bootstrapNumbers_, starts[c], chain))
+                chains_[c]->trace.start(chain.x);
+            else
                 ++lost;
-                continue;
-            }
-            chain.feature = Worker::featureOf(chain.x);
-            chains_[c]->trace.start(chain.x);
-            w.kernel.enter(chain);
         }
     });
     std::erase_if(chains_, [](const auto& slot) { return slot->chain.x.splats.size() == 0; });
@@ -238,7 +268,7 @@ void ChainRun::work(int worker, uint64_t begin, uint64_t end) {
     w.pending = 0;
     w.feature = chain.feature;
     try {
-        for (uint64_t i = begin; i < end; ++i) step(w, chain, i % kTimedEvery == 0);
+        for (uint64_t i = begin; i < end; ++i) i % kTimedEvery == 0 ? timedStep(w, chain) : step(w, chain, w);
     } catch (...) {
         failed_ = true;
         throw;
@@ -249,20 +279,22 @@ void ChainRun::work(int worker, uint64_t begin, uint64_t end) {
     slot.steps.store(from + (end - begin), std::memory_order_release);
 }
 
-void ChainRun::step(Worker& w, Chain& chain, bool timed) {
+void ChainRun::step(Worker& w, Chain& chain, StepObserver& observer) {
     Random random(context_.key, chain.index, chain.step);
     StepContext context{random, w.target->tracing(), limits_};
-    if (!timed) return w.kernel.step(chain, *w.target, context, w);
-    const auto start = std::chrono::steady_clock::now();
-    w.kernel.step(chain, *w.target, context, w);
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    if (w.last >= 0) w.statistics[size_t(w.last)].seconds += seconds * double(kTimedEvery);
+    w.kernel.step(chain, *w.target, context, observer);
+}
+
+void ChainRun::timedStep(Worker& w, Chain& chain) {
+    const auto start = Clock::now();
+    step(w, chain, w);
+    if (w.last >= 0) w.statistics[size_t(w.last)].seconds += secondsSince(start) * double(kTimedEvery);
 }
 
 Image ChainRun::develop(uint64_t units) const {
     Film film = workers_[0]->film;
     for (size_t i = 1; i < workers_.size(); ++i) film.merge(workers_[i]->film);
-    return film.develop(context_.scene.sensor->windowArea() * normalization_ / double(units));
+    return film.develop(context_.scene.sensor->windowArea() * bootstrap_.mean / double(units));
 }
 
 uint64_t ChainRun::rays() const {
@@ -273,11 +305,11 @@ uint64_t ChainRun::rays() const {
 
 void ChainRun::report(uint64_t units, RenderStatistics& s) const {
     s.rays = rays();
-    s.samples = pilotSamples_ + bootstrapSamples_;
+    s.samples = pilotSamples_ + bootstrap_.samples;
     s.mutations = units;
     s.chains = chains_.size();
-    s.normalization = normalization_;
-    s.normalizationStandardError = normalizationStandardError_;
+    s.normalization = bootstrap_.mean;
+    s.normalizationStandardError = bootstrap_.standardError;
     std::vector<FixedSum> energy(context_.scene.features.names.size());
     uint64_t nullSteps = 0;
     for (const auto& w : workers_) {
@@ -292,10 +324,20 @@ void ChainRun::report(uint64_t units, RenderStatistics& s) const {
         nullSteps += w->nullSteps;
     }
     if (bootstrapNotFinite_ > 0) s.nonFinite["bootstrap"] = bootstrapNotFinite_;
-    for (const FixedSum& e : energy) s.featureEnergy.push_back(units > 0 ? e.value() * normalization_ / double(units) : 0);
+    for (const FixedSum& e : energy) s.featureEnergy.push_back(units > 0 ? e.value() * bootstrap_.mean / double(units) : 0);
     for (const auto& slot : chains_) s.traces.push_back(slot->trace);
     s.diagnostics["pilot_samples"] = pilotSamples_;
-    s.diagnostics["bootstrap_samples"] = bootstrapSamples_;
+    s.diagnostics["bootstrap_samples"] = bootstrap_.samples;
+    s.diagnostics["bootstrap_effective_samples"] = bootstrap_.effective;
+    s.diagnostics["bootstrap_stratification"] = bootstrap_.stratification;
+    if (plan_)
+        s.diagnostics["seeding_plan"] = {{"expected_error", plan_->expectedError},
+                                         {"wanted_std_error", SeedingPlan::kScaleError * plan_->expectedError},
+                                         {"samples_for_scale", plan_->samplesForScale},
+                                         {"samples_for_starts", plan_->samplesForStarts},
+                                         {"samples_for_smallest_share", plan_->samplesForSmallestShare},
+                                         {"samples_for_largest_share", plan_->samplesForLargestShare},
+                                         {"samples", plan_->samples}};
     s.diagnostics["null_steps"] = nullSteps;
     s.diagnostics["seeds_lost_to_rounding"] = seedsLost_;
 }

@@ -4,6 +4,7 @@
 #include "core/image/film.h"
 #include "core/mcmc/kernel.h"
 #include "core/render/sampler.h"
+#include "core/render/seeding.h"
 
 #include <atomic>
 
@@ -17,7 +18,7 @@ struct ChainParameters {
     template <class V>
     void describe(V& v) {
         v("chains", chains, {.help = "Markov chains, whatever the number of threads", .min = 1, .max = 1e6});
-        v("bootstrap", bootstrap, {.help = "bidirectional samples that seed the chains and give the image's scale; 0: about a tenth of the work", .min = 0, .max = 1e8});
+        v("bootstrap", bootstrap, {.help = "bidirectional samples that seed the chains and give the image's scale; 0: as many as the image's expected error asks for, for 1/20 to 1/2 of the budget", .min = 0, .max = 1e8});
         v("target", target, {.help = "what chains are distributed as: a scalar of the contribution (ulam list targets)"});
     }
 };
@@ -52,11 +53,18 @@ private:
     struct Worker;
     struct ChainSlot;
 
-    std::vector<double> weigh(uint32_t stream, uint64_t first, uint64_t last, const StopFunction& stop);
-    void pilot(const StopFunction& stop);
-    void bootstrap(const StopFunction& stop);
-    void seedChains();
-    void step(Worker& worker, Chain& chain, bool timed);
+    struct Cost {
+        double seconds, rays;
+    };
+
+    void weigh(const BootstrapNumbers& numbers, uint64_t last, const StopFunction& stop, std::vector<double>& weights);
+    uint64_t planBootstrap(const StopFunction& stop, std::vector<double>& pilot);
+    double fractionOfBudget(const Cost& cost, double units) const;
+    Cost tryMutations(std::span<const double> pilot);
+    bool startChain(Worker& worker, const BootstrapNumbers& numbers, const Start& start, Chain& chain);
+    void seedChains(std::span<const double> weights);
+    void step(Worker& worker, Chain& chain, StepObserver& observer);
+    void timedStep(Worker& worker, Chain& chain);
 
     RunContext context_;
     ChainParameters parameters_;
@@ -65,11 +73,11 @@ private:
     Deposit deposit_;
     std::vector<std::unique_ptr<Worker>> workers_;
     std::vector<std::unique_ptr<ChainSlot>> chains_;
-    std::vector<double> weights_;  ///< of the bootstrap samples; empty once the chains are seeded
-    uint64_t pilotSamples_ = 0, bootstrapSamples_ = 0, bootstrapNotFinite_ = 0, seedsLost_ = 0;
-    double pilotSeconds_ = 0;
+    BootstrapNumbers pilotNumbers_, bootstrapNumbers_;
+    std::optional<SeedingPlan> plan_;  ///< none where the size of the bootstrap is given
+    WeightMoments bootstrap_;
     double pilotNormalization_ = 0;  ///< b from samples that seed nothing
-    double normalization_ = 0, normalizationStandardError_ = 0;
+    uint64_t pilotSamples_ = 0, bootstrapNotFinite_ = 0, seedsLost_ = 0;
     std::atomic<bool> failed_ = false;  ///< a step threw; workers that wait for its chain give up
 };
 

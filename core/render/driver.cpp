@@ -33,7 +33,7 @@ public:
         if (b.spp) units = std::min(units, *b.spp * pixels_);
         if (b.mutations) units = std::min(units, *b.mutations);
         unitLimit_ = std::isfinite(units) ? uint64_t(std::llround(std::max(1.0, units))) : kUnlimited;
-        run_ = sampler.start({scene, options.key, options.threads, std::isfinite(units) ? units : 0, b.seconds.value_or(0)});
+        run_ = sampler.start({scene, options.key, options.threads, std::isfinite(units) ? units : 0, b.seconds.value_or(0), b.rays.value_or(0)});
     }
 
     RenderResult execute() {

@@ -20,6 +20,7 @@ struct RunContext {
     int workers;             ///< threads; each has its own film and scratch space
     double expectedUnits;    ///< samples or mutations the budget may allow, as far as known (0: unknown)
     double expectedSeconds;  ///< time budget (0: none)
+    double expectedRays;     ///< budget of rays (0: none)
 };
 
 /// One run of a sampler. Work comes in units (samples, or mutations for chains), numbered from 0. The image depends on

@@ -32,6 +32,8 @@ TEST_CASE("a filter integrates to 1, is even and ends at its radius") {
     for (const ReconstructionFilter& filter : filters()) {
         const double r = filter.radius(), inside = std::nextafter(r, 0.0);
         CHECK(simpson([&](double x) { return filter(x); }, -inside, inside) == Approx(1).epsilon(1e-7));
+        CHECK(simpson([&](double x) { return filter(x) * filter(x); }, -inside, inside) ==
+              Approx(filter.squareIntegral()).epsilon(1e-7));
         CHECK(filter(0.3) == Approx(filter(-0.3)));
         CHECK(filter(r * 1.0001) == 0);
         CHECK(filter(-r * 1.0001) == 0);

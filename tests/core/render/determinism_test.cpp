@@ -128,3 +128,21 @@ TEST_CASE("a run that was stopped is repeated exactly by the work it did") {
         CHECK(sameBytes(again.image, stopped.image));
     }
 }
+
+TEST_CASE("the bootstrap is planned alike with any number of threads, and a repetition that knows its size needs no plan") {
+    const Scene scene = buildScene(pathScene("glass_and_mirror").dictionary);
+    Budget mutations, rays;
+    mutations.mutations = 20'000, rays.rays = 300'000;
+    for (const char* name : {"mlt", "pssmlt"})
+        for (const Budget& budget : {mutations, rays}) {
+            Job job{{{"type", name}, {"max_depth", 5}, {"chains", 37}}, budget};
+            INFO(job.sampler.dump());
+            const RenderResult one = run(scene, job, 1), three = run(scene, job, 3);
+            CHECK(three.statistics.diagnostics == one.statistics.diagnostics);
+            CHECK(sameBytes(three.image, one.image));
+            job.sampler["bootstrap"] = one.statistics.diagnostics["bootstrap_samples"];
+            job.budget = {};
+            job.budget.mutations = double(one.units);
+            CHECK(sameBytes(run(scene, job, 2).image, one.image));
+        }
+}
