@@ -14,8 +14,9 @@ constexpr uint32_t kTrialStream = 0xe0000000u, kBootstrapStream = 0xf0000000u, k
 // Timing every step would cost more than a cheap step.
 constexpr uint64_t kTimedEvery = 32;
 
-// The pilot doubles until enough of its samples carried light, or until it has had its share of the budget.
-constexpr uint64_t kPilot = 10'000, kPilotHits = 32;
+// The pilot doubles from its first samples until there are enough and enough of them carried light, or until it has had
+// its share of the budget.
+constexpr uint64_t kFirstPilot = 1000, kPilot = 10'000, kPilotHits = 32;
 constexpr double kPilotShare = 0.02;
 constexpr uint64_t kTrialChains = 64;  // each makes one chunk of steps
 
@@ -180,11 +181,12 @@ double ChainRun::fractionOfBudget(const Cost& cost, double units) const {
 uint64_t ChainRun::planBootstrap(const StopFunction& stop, std::vector<double>& pilot) {
     const auto start = Clock::now();
     double seconds = 0;
-    for (uint64_t count = kPilot, hits = 0; hits < kPilotHits; count *= 2) {
+    for (uint64_t count = kFirstPilot;; count *= 2) {
         weigh(pilotNumbers_, count, stop, pilot);
         seconds = secondsSince(start);
-        hits = uint64_t(std::count_if(pilot.begin(), pilot.end(), [](double w) { return w > 0; }));
-        if (pilot.size() < count || fractionOfBudget({seconds, double(rays())}, double(count)) > kPilotShare) break;
+        const auto hits = uint64_t(std::count_if(pilot.begin(), pilot.end(), [](double w) { return w > 0; }));
+        const bool stopped = pilot.size() < count, enough = count >= kPilot && hits >= kPilotHits;
+        if (stopped || enough || fractionOfBudget({seconds, double(rays())}, double(count)) > kPilotShare) break;
     }
     if (pilot.empty()) return uint64_t(SeedingPlan::kFewest);  // no time was left
     const Cost sample{seconds / double(pilot.size()), double(rays()) / double(pilot.size())};
