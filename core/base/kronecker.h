@@ -7,7 +7,8 @@
 namespace ulam {
 
 /// Point i is (shift_k + i α_k) mod 1 with α_k = φ^−k, where φ^(D+1) = φ + 1: the golden ratio's generalisation, whose
-/// powers are badly approximable together (Roberts 2018, "The unreasonable effectiveness of quasirandom sequences").
+/// powers are badly approximable together (Roberts 2018, "The unreasonable effectiveness of quasirandom sequences"). Every
+/// dimension alone is even; of pairs the first are, a few later ones are less even than independent points.
 /// With shifts that are uniform in (0, 1) every single point is so too (Cranley & Patterson 1976).
 template <int D>
 class KroneckerSequence {
