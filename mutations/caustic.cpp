@@ -30,8 +30,8 @@ public:
         const int k = x.path.length(), s = start(x.path);
         const Perspective& sensor = *context.scene().sensor;
         const Block u = context.random.nextBlock();
-        Vertex lens = x.path.camera();
-        if (!sensor.positionIsDelta() && !AperturePerturbation::sample(sensor, x.path.camera(), u, lens)) return p.reject = Reject::OffScreen, p;
+        Vertex lens;
+        if (!AperturePerturbation::sample(sensor, x.path.camera(), u, lens)) return p.reject = Reject::OffScreen, p;
         PathEdit edit(x, s, k + 1, k + 1 - s, context, p.y);
         edit.takeFromCamera(lens);
         p.y.path[s].lobe = Lobe::Smooth;

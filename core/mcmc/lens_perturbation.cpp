@@ -20,8 +20,8 @@ Proposal LensPerturbation::propose(const Sample& x, int m, StepContext& context)
     const Block u = context.random.nextBlock();
     const Vec2f raster = raster_.sample(x.splats[0].raster, u);
     if (!sensor.contains(raster)) return p.reject = Reject::OffScreen, p;
-    Vertex lens = x.path.camera();
-    if (!sensor.positionIsDelta() && !AperturePerturbation::sample(sensor, x.path.camera(), u, lens)) return p.reject = Reject::OffScreen, p;
+    Vertex lens;
+    if (!AperturePerturbation::sample(sensor, x.path.camera(), u, lens)) return p.reject = Reject::OffScreen, p;
 
     PathEdit edit(x, m - 1, k + 1, k - m + 2, context, p.y);
     edit.takeFromCamera(lens);

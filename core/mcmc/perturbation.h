@@ -41,8 +41,9 @@ struct AperturePerturbation {
     /// In units of the aperture's radius.
     static constexpr ExponentialStep kStep{0.01, 1, 2e-6};
 
-    /// False where the step leaves the lens.
+    /// From u[2] and u[3]; false where the step leaves the lens.
     static bool sample(const Perspective& sensor, const Vertex& from, const Block& u, Vertex& to) {
+        if (sensor.positionIsDelta()) return to = from, true;
         const Vec2f p = sensor.onDisc(from);
         const double r = kStep.sample(u[2]), phi = 2 * kPi * u[3];
         const Vec2f q(float(p.x + r * std::cos(phi)), float(p.y + r * std::sin(phi)));

@@ -88,18 +88,14 @@ private:
         const uint32_t e = scene_.emitterAt(v);
         if (e >= scene_.emitters.size()) return fmt::format("{} that belongs to no emitter", name(v.kind));
         const Emitter& emitter = scene_.emitters[e];
-        const auto* point = std::get_if<PointEmitter>(&emitter);
-        const auto* spot = std::get_if<SpotEmitter>(&emitter);
-        const auto* parallel = std::get_if<DirectionalEmitter>(&emitter);
-        if (point || spot) {
-            const Vec3f& place = point ? point->position : spot->position;
-            if (v.kind == Kind::Point && v.position == place) return {};
-            return fmt::format("{} at {}, but its emitter is a point at {}", name(v.kind), text(v.position), text(place));
-        }
-        const Kind expected = parallel ? Kind::Direction : isEnvironment(emitter) ? Kind::Infinite : Kind::Surface;
+        const auto* given = dispatch(emitter, []<class E>(const E& e) -> const DeltaPosition* {
+            if constexpr (std::is_base_of_v<DeltaPosition, E>) return &e;
+            else return nullptr;
+        });
+        if (given && v.position != given->position)
+            return fmt::format("{} at {}, but its emitter is {} at {}", name(v.kind), text(v.position), name(given->kind), text(given->position));
+        const Kind expected = given ? given->kind : isEnvironment(emitter) ? Kind::Infinite : Kind::Surface;
         if (v.kind != expected) return fmt::format("{}, but its emitter is {}", name(v.kind), name(expected));
-        if (parallel && v.position != -parallel->travel)
-            return fmt::format("direction {}, but its emitter's light comes from {}", text(v.position), text(-parallel->travel));
         if (v.atInfinity() && std::abs(length(v.position) - 1) > kCosineError)
             return fmt::format("direction {} of length {}, expected 1", text(v.position), length(v.position));
         return {};

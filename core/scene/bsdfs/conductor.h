@@ -2,22 +2,13 @@
 // conductor: smooth metal on the side of the shading normal (Mitsuba 3 `conductor`).
 
 #include "core/scene/bsdfs/fresnel.h"
+#include "core/scene/bsdfs/parameters.h"
 #include "core/scene/bsdfs/scattering.h"
 
 namespace ulam {
 
 struct Conductor {
-    struct Parameters {
-        std::string material = "none";
-        Spectrum eta{0, 0, 0}, k{1, 1, 1}, specularReflectance{1, 1, 1};
-        template <class V>
-        void describe(V& v) {
-            v("material", material, {.help = "none: eta = 0, k = 1, a perfect mirror, unless eta and k are given", .choices = {"none"}});
-            v("eta", eta, {.help = "real part of the index of refraction", .min = 0, .max = 1e3});
-            v("k", k, {.help = "imaginary part of the index of refraction", .min = 0, .max = 1e3});
-            v("specular_reflectance", specularReflectance, {.help = "factor on the Fresnel reflectance", .min = 0, .max = 1});
-        }
-    };
+    using Parameters = MetalParameters;
     explicit Conductor(const Parameters& p) : eta(p.eta), k(p.k), specularReflectance(p.specularReflectance) {}
 
     static constexpr bool hasDelta = true, hasSmooth = false, hasNull = false, transmits = false;

@@ -4,23 +4,12 @@
 
 #include "core/scene/bsdfs/coat.h"
 #include "core/scene/bsdfs/fresnel.h"
+#include "core/scene/bsdfs/parameters.h"
 
 namespace ulam {
 
 struct Plastic {
-    struct Parameters {
-        Spectrum diffuseReflectance{0.5, 0.5, 0.5}, specularReflectance{1, 1, 1};
-        bool nonlinear = false;
-        double intIor = 1.49, extIor = 1.000277;
-        template <class V>
-        void describe(V& v) {
-            v("diffuse_reflectance", diffuseReflectance, {.help = "of the base", .min = 0, .max = 1});
-            v("specular_reflectance", specularReflectance, {.help = "factor on the coat's reflection", .min = 0, .max = 1});
-            v("nonlinear", nonlinear, {.help = "colours saturate by scattering between base and coat"});
-            v("int_ior", intIor, {.help = "index of refraction of the coat; default polypropylene", .min = 0.1, .max = 10});
-            v("ext_ior", extIor, {.help = "index of refraction outside; default air", .min = 0.1, .max = 10});
-        }
-    };
+    using Parameters = CoatParameters;
     explicit Plastic(const Parameters& p)
         : coat{p.intIor / p.extIor, diffuseFresnelFromInside(p.intIor / p.extIor), p.nonlinear},
           diffuseReflectance(p.diffuseReflectance),

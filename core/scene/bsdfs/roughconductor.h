@@ -4,20 +4,16 @@
 
 #include "core/scene/bsdfs/fresnel.h"
 #include "core/scene/bsdfs/microfacet.h"
+#include "core/scene/bsdfs/parameters.h"
 
 namespace ulam {
 
 struct RoughConductor {
-    struct Parameters {
-        std::string material = "none";
-        Spectrum eta{0, 0, 0}, k{1, 1, 1}, specularReflectance{1, 1, 1};
+    struct Parameters : MetalParameters {
         MicrofacetParameters microfacets;
         template <class V>
         void describe(V& v) {
-            v("material", material, {.help = "none: eta = 0, k = 1, a perfect mirror, unless eta and k are given", .choices = {"none"}});
-            v("eta", eta, {.help = "real part of the index of refraction", .min = 0, .max = 1e3});
-            v("k", k, {.help = "imaginary part of the index of refraction", .min = 0, .max = 1e3});
-            v("specular_reflectance", specularReflectance, {.help = "factor on the Fresnel reflectance", .min = 0, .max = 1});
+            MetalParameters::describe(v);
             microfacets.describe(v);
         }
     };

@@ -9,20 +9,16 @@
 #include "core/base/error.h"
 #include "core/scene/bsdfs/fresnel.h"
 #include "core/scene/bsdfs/microfacet.h"
+#include "core/scene/bsdfs/parameters.h"
 
 namespace ulam {
 
 struct RoughDielectric {
-    struct Parameters {
-        double intIor = 1.5046, extIor = 1.000277;
-        Spectrum specularReflectance{1, 1, 1}, specularTransmittance{1, 1, 1};
+    struct Parameters : InterfaceParameters {
         MicrofacetParameters microfacets;
         template <class V>
         void describe(V& v) {
-            v("int_ior", intIor, {.help = "index of refraction inside; default BK7 glass", .min = 0.1, .max = 10});
-            v("ext_ior", extIor, {.help = "index of refraction outside, not the same; default air", .min = 0.1, .max = 10});
-            v("specular_reflectance", specularReflectance, {.help = "factor on the reflected light", .min = 0, .max = 1});
-            v("specular_transmittance", specularTransmittance, {.help = "factor on the transmitted light", .min = 0, .max = 1});
+            InterfaceParameters::describe(v);
             microfacets.describe(v);
         }
         double ior() const {

@@ -13,6 +13,7 @@
 #include "core/scene/bsdfs/coat.h"
 #include "core/scene/bsdfs/fresnel.h"
 #include "core/scene/bsdfs/microfacet.h"
+#include "core/scene/bsdfs/parameters.h"
 
 namespace ulam {
 
@@ -55,26 +56,19 @@ double roughTransmittance(const MicrofacetDistribution& distribution, double ior
 double roughInternalReflectance(const MicrofacetDistribution& distribution, double ior);
 
 struct RoughPlastic {
-    struct Parameters {
-        Spectrum diffuseReflectance{0.5, 0.5, 0.5}, specularReflectance{1, 1, 1};
-        bool nonlinear = false;
-        double intIor = 1.49, extIor = 1.000277;
+    struct Parameters : CoatParameters {
         std::string distribution = "beckmann";
         double alpha = 0.1;
         bool sampleVisible = true;
         template <class V>
         void describe(V& v) {
-            v("diffuse_reflectance", diffuseReflectance, {.help = "of the base", .min = 0, .max = 1});
-            v("specular_reflectance", specularReflectance, {.help = "factor on the coat's reflection", .min = 0, .max = 1});
-            v("nonlinear", nonlinear, {.help = "colours saturate by scattering between base and coat"});
-            v("int_ior", intIor, {.help = "index of refraction of the coat; default polypropylene", .min = 0.1, .max = 10});
-            v("ext_ior", extIor, {.help = "index of refraction outside; default air", .min = 0.1, .max = 10});
+            CoatParameters::describe(v);
             v("distribution", distribution, {.help = "of the microfacet normals", .choices = {"beckmann", "ggx"}});
             v("alpha", alpha, {.help = "roughness; of Beckmann the root mean square slope", .min = 1e-4, .max = 1});
             v("sample_visible", sampleVisible, {.help = "without effect: visible normals are always sampled"});
         }
         MicrofacetDistribution microfacets() const { return {MicrofacetDistribution::kindOf(distribution), alpha, alpha}; }
-        /// Inside a thinner coat there is no light beyond the critical angle, which the formula for the base assumes.
+        /// The integrals are written for light that enters a denser coat: off a thinner one it may be reflected totally.
         double ior() const {
             if (intIor < extIor) fail(ExitCode::InvalidConfig, "roughplastic: int_ior must not be below ext_ior");
             return intIor / extIor;

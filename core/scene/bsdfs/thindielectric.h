@@ -4,22 +4,13 @@
 // same on both sides.
 
 #include "core/scene/bsdfs/fresnel.h"
+#include "core/scene/bsdfs/parameters.h"
 #include "core/scene/bsdfs/scattering.h"
 
 namespace ulam {
 
 struct ThinDielectric {
-    struct Parameters {
-        double intIor = 1.5046, extIor = 1.000277;
-        Spectrum specularReflectance{1, 1, 1}, specularTransmittance{1, 1, 1};
-        template <class V>
-        void describe(V& v) {
-            v("int_ior", intIor, {.help = "index of refraction of the pane; default BK7 glass", .min = 0.1, .max = 10});
-            v("ext_ior", extIor, {.help = "index of refraction around it; default air", .min = 0.1, .max = 10});
-            v("specular_reflectance", specularReflectance, {.help = "factor on the reflected light", .min = 0, .max = 1});
-            v("specular_transmittance", specularTransmittance, {.help = "factor on the transmitted light", .min = 0, .max = 1});
-        }
-    };
+    using Parameters = InterfaceParameters;
     explicit ThinDielectric(const Parameters& p)
         : ior(p.intIor / p.extIor),
           specularReflectance(p.specularReflectance),

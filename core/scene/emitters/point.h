@@ -1,11 +1,11 @@
 #pragma once
 // point: the same intensity in all directions from one point (Mitsuba 3 `point`).
 
-#include "core/scene/emitters/emission.h"
+#include "core/scene/emitters/delta_position.h"
 
 namespace ulam {
 
-struct PointEmitter {
+struct PointEmitter : DeltaPosition {
     struct Parameters {
         Spectrum intensity{1, 1, 1};
         template <class V>
@@ -14,22 +14,11 @@ struct PointEmitter {
         }
     };
 
-    Spectrum intensity;
-    Vec3f position;
+    PointEmitter(const Parameters& p, const Vec3f& place) : DeltaPosition{place, Vertex::Kind::Point}, intensity(p.intensity) {}
 
-    static constexpr bool positionIsDelta = true;
+    Spectrum intensity;
 
     double power(const EmissionContext&) const { return luminance(intensity) * 4 * kPi; }
-
-    Vertex samplePosition(const EmissionContext& c, const Block&) const {
-        Vertex v{};
-        v.position = position;
-        v.kind = Vertex::Kind::Point;
-        v.shape = c.index;
-        return v;
-    }
-    double positionPdf(const EmissionContext&, const Vertex&) const { return 1; }
-    void invertPosition(const EmissionContext&, const Vertex&, Block&) const {}
 
     EmittedRay sampleDirection(const EmissionContext&, const Vertex&, const Block& u) const {
         return {position, squareToSphere(u[0], u[1]), kSpherePdf};
@@ -42,10 +31,6 @@ struct PointEmitter {
     }
 
     Spectrum radiance(const EmissionContext&, const Vertex&, const Vec3f&) const { return intensity; }
-
-    Vertex sampleDirect(const EmissionContext& c, const Vertex&, const Block& u) const { return samplePosition(c, u); }
-    double directPdf(const EmissionContext&, const Vertex&, const Vertex&) const { return 1; }
-    void invertDirect(const EmissionContext&, const Vertex&, Block&) const {}
 };
 
 }  // namespace ulam

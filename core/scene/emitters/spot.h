@@ -2,11 +2,11 @@
 // spot: a point that shines into a cone (Mitsuba 3 `spot`): full intensity up to beam_width from the axis, from there
 // falling linearly with the angle to nothing at cutoff_angle.
 
-#include "core/scene/emitters/emission.h"
+#include "core/scene/emitters/delta_position.h"
 
 namespace ulam {
 
-struct SpotEmitter {
+struct SpotEmitter : DeltaPosition {
     struct Parameters {
         Spectrum intensity{1, 1, 1};
         double cutoffAngle = 20, beamWidth = 0;
@@ -18,34 +18,21 @@ struct SpotEmitter {
         }
     };
     SpotEmitter(const Parameters& p, const Vec3f& place, const Vec3f& direction)
-        : intensity(p.intensity),
-          position(place),
+        : DeltaPosition{place, Vertex::Kind::Point},
+          intensity(p.intensity),
           frame(direction),
           cutoff(p.cutoffAngle * kPi / 180),
           beam((p.beamWidth > 0 ? p.beamWidth : 0.75 * p.cutoffAngle) * kPi / 180) {}
 
     Spectrum intensity;
-    Vec3f position;
-    Frame frame;           ///< n: the axis
-    double cutoff, beam;   ///< radians
-
-    static constexpr bool positionIsDelta = true;
+    Frame frame;          ///< n: the axis
+    double cutoff, beam;  ///< radians
 
     /// ∫ intensity dω: full over the beam, and the ramp by parts.
     double power(const EmissionContext&) const {
         const double whole = cutoff > beam ? 1 - (std::sin(cutoff) - std::sin(beam)) / (cutoff - beam) : 1 - std::cos(cutoff);
         return luminance(intensity) * 2 * kPi * whole;
     }
-
-    Vertex samplePosition(const EmissionContext& c, const Block&) const {
-        Vertex v{};
-        v.position = position;
-        v.kind = Vertex::Kind::Point;
-        v.shape = c.index;
-        return v;
-    }
-    double positionPdf(const EmissionContext&, const Vertex&) const { return 1; }
-    void invertPosition(const EmissionContext&, const Vertex&, Block&) const {}
 
     /// Uniform over the cone.
     EmittedRay sampleDirection(const EmissionContext&, const Vertex&, const Block& u) const {
@@ -65,10 +52,6 @@ struct SpotEmitter {
         if (theta >= cutoff) return Spectrum(0.0);
         return theta <= beam ? intensity : intensity * ((cutoff - theta) / (cutoff - beam));
     }
-
-    Vertex sampleDirect(const EmissionContext& c, const Vertex&, const Block& u) const { return samplePosition(c, u); }
-    double directPdf(const EmissionContext&, const Vertex&, const Vertex&) const { return 1; }
-    void invertDirect(const EmissionContext&, const Vertex&, Block&) const {}
 
 private:
     double conePdf() const { return 1 / (2 * kPi * (1 - std::cos(cutoff))); }

@@ -69,10 +69,10 @@ Emitter readSpot(const JsonNode& node, LoadContext&) {
 Emitter readDirectional(const JsonNode& node, LoadContext&) {
     const auto p = parsePlugin<DirectionalParameters>(node);
     if (!p.direction.isNull() && !p.toWorld.isNull()) p.toWorld.fail("a directional emitter has either a direction or a to_world");
-    if (p.direction.isNull()) return DirectionalEmitter{p.irradiance, turned(parseTransform(p.toWorld), {0, 0, 1})};
+    if (p.direction.isNull()) return DirectionalEmitter(p, turned(parseTransform(p.toWorld), {0, 0, 1}));
     const Vec3d direction = parseVector(p.direction);
     if (!(direction.length() > 0)) p.direction.expected("a direction longer than 0");
-    return DirectionalEmitter{p.irradiance, Vec3f(direction.normalized())};
+    return DirectionalEmitter(p, Vec3f(direction.normalized()));
 }
 
 Emitter readEnvmap(const JsonNode& node, LoadContext& context) {
@@ -97,7 +97,7 @@ Emitter readPoint(const JsonNode& node, LoadContext&) {
     Vec3d place(0.0);
     parseTransform(p.toWorld).multVecMatrix(Vec3d(0.0), place);
     if (!p.position.isNull()) place = parseVector(p.position);
-    return PointEmitter{p.intensity, Vec3f(place)};
+    return PointEmitter(p, Vec3f(place));
 }
 
 Emitter readConstant(const JsonNode& node, LoadContext&) {
