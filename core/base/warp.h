@@ -10,11 +10,12 @@ struct Sample2 {
     double u, v;
 };
 
-/// An orthonormal basis around a unit vector (Duff et al. 2017, "Building an orthonormal basis, revisited").
+/// An orthonormal basis around a unit vector (Duff et al. 2017, "Building an orthonormal basis, revisited"). Always inlined:
+/// what a caller does not use of it is never computed.
 struct Frame {
     Vec3f s, t, n;
 
-    explicit Frame(const Vec3f& normal) : n(normal) {
+    [[gnu::always_inline]] explicit Frame(const Vec3f& normal) : n(normal) {
         const float sign = std::copysign(1.0f, n.z), a = -1 / (sign + n.z), b = n.x * n.y * a;
         s = {1 + sign * n.x * n.x * a, sign * b, -sign * n.x};
         t = {b, sign + n.y * n.y * a, -n.y};
@@ -29,8 +30,8 @@ struct Frame {
         s = normalize(across);
         t = cross(n, s);
     }
-    Vec3f toLocal(const Vec3f& v) const { return {dot(v, s), dot(v, t), dot(v, n)}; }
-    Vec3f toWorld(const Vec3f& v) const { return s * v.x + t * v.y + n * v.z; }
+    [[gnu::always_inline]] Vec3f toLocal(const Vec3f& v) const { return {dot(v, s), dot(v, t), dot(v, n)}; }
+    [[gnu::always_inline]] Vec3f toWorld(const Vec3f& v) const { return s * v.x + t * v.y + n * v.z; }
 };
 
 /// The azimuth of (x, y) as a number in [0, 1).

@@ -23,6 +23,11 @@ public:
         sums_[pixel][2].add(b);
     }
     void add(const FilmPlane& other);
+    /// Both ends: a pixel may lie on two cache lines.
+    void fetch(size_t pixel) const {
+        __builtin_prefetch(&sums_[pixel], 1);
+        __builtin_prefetch(&sums_[pixel].back(), 1);
+    }
     Spectrum operator[](size_t pixel) const {
         return {sums_[pixel][0].value(), sums_[pixel][1].value(), sums_[pixel][2].value()};
     }
@@ -47,6 +52,11 @@ public:
     void countSample(int pixel);
     /// Spreads a value over the pixels around a raster position (pixels from the upper left corner).
     void splat(const Vec2f& raster, const Spectrum& value);
+    /// Has the memory around a raster position brought near.
+    void fetchSplats(const Vec2f& raster) const {
+        const int x = int(raster.x), y = int(raster.y);
+        if (x >= 0 && x < width_ && y >= 0 && y < height_ && !splats_.empty()) splats_.fetch(size_t(y * width_ + x));
+    }
 
     void merge(const Film& other);
     uint64_t nonFinite() const { return nonFinite_; }

@@ -11,10 +11,10 @@ class LocalFrame {
 public:
     LocalFrame(const Frame& frame, bool mirrored) : frame_(frame), mirrored_(mirrored) {}
     [[gnu::always_inline]] Vec3f toLocal(const Vec3f& w) const { return mirror(frame_.toLocal(w)); }
-    Vec3f toWorld(const Vec3f& w) const { return frame_.toWorld(mirror(w)); }
+    [[gnu::always_inline]] Vec3f toWorld(const Vec3f& w) const { return frame_.toWorld(mirror(w)); }
 
 private:
-    Vec3f mirror(const Vec3f& w) const { return {w.x, w.y, mirrored_ ? -w.z : w.z}; }
+    [[gnu::always_inline]] Vec3f mirror(const Vec3f& w) const { return {w.x, w.y, mirrored_ ? -w.z : w.z}; }
 
     Frame frame_;
     bool mirrored_;
@@ -22,7 +22,7 @@ private:
 
 /// Around the shading normal; x along ∂p/∂u where the BSDF asks for it.
 template <class B>
-LocalFrame localFrame(const Scene& scene, const Vertex& v, const B& bsdf, bool mirrored) {
+[[gnu::always_inline]] inline LocalFrame localFrame(const Scene& scene, const Vertex& v, const B& bsdf, bool mirrored) {
     if constexpr (requires { bsdf.anisotropic(); })
         if (bsdf.anisotropic()) return {Frame(v.shadingNormal, scene.shapes[v.shape].tangent(v)), mirrored};
     return {Frame(v.shadingNormal), mirrored};

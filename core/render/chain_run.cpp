@@ -1,5 +1,6 @@
 #include "core/render/chain_run.h"
 
+#include "core/image/splat_queue.h"
 #include "core/render/parallel.h"
 
 #include <chrono>
@@ -87,7 +88,7 @@ struct ChainRun::Worker : StepObserver {
     void deposit(const Sample& x, double w) {
         for (int i = 0; i < x.splats.size(); ++i) {
             const Splat& splat = x.splats[i];
-            film.splat(splat.raster, splat.value * w);
+            splats.add(splat.raster, splat.value * w);
             if (splat.feature == kNone) continue;
             const double energy = luminance(splat.value) * w;
             if (energy < FixedSum::kLargestTerm) featureEnergy[splat.feature].add(energy);
@@ -109,6 +110,7 @@ struct ChainRun::Worker : StepObserver {
     std::unique_ptr<Target> target;
     Kernel kernel;
     Film film;
+    SplatQueue splats{film};
     std::vector<MutationStatistics> statistics;
     std::vector<FixedSum> featureEnergy;
     double largeStepProbability;
@@ -276,6 +278,7 @@ void ChainRun::work(int worker, uint64_t begin, uint64_t end) {
         throw;
     }
     if (w.pending > 0) w.deposit(chain.x, w.pending);
+    w.splats.flush();
     chain.feature = w.feature;
     if (end % chunk() == 0) slot.trace.record(chain.x, chain.feature);
     slot.steps.store(from + (end - begin), std::memory_order_release);

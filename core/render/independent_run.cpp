@@ -1,5 +1,6 @@
 #include "core/render/independent_run.h"
 
+#include "core/image/splat_queue.h"
 #include "core/render/technique_films.h"
 
 #include <numeric>
@@ -65,7 +66,7 @@ struct IndependentRun::Worker : ContributionSink {
     }
 
     void add(const Contribution& c, uint32_t feature) override {
-        if (c.technique.t == 1) film.splat(c.raster, c.value);
+        if (c.technique.t == 1) splats.add(c.raster, c.value);
         else sum += c.value;
         if (techniques) techniques->add(c, pixel);
         if (feature == kNone) return;
@@ -76,6 +77,7 @@ struct IndependentRun::Worker : ContributionSink {
     std::unique_ptr<SampleSource> source;
     PrimaryVector u;
     Film film;
+    SplatQueue splats{film};
     double pixelShare;
     std::unique_ptr<TechniqueFilms> techniques;
     std::vector<FixedSum> featureEnergy;
@@ -105,6 +107,7 @@ void IndependentRun::work(int worker, uint64_t begin, uint64_t end) {
         w.film.countSample(w.pixel);
         w.film.addSample(w.pixel, w.sum);
     }
+    w.splats.flush();
 }
 
 Image IndependentRun::develop(uint64_t units) const {
