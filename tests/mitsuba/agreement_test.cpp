@@ -22,7 +22,7 @@ namespace {
 const fs::path kHere = "tests/mitsuba", kBuild = "build/mitsuba", kPython = kBuild / "venv/bin/python";
 
 constexpr int kRuns = 32, kThreads = 2;
-// Largest half width of the energy interval: 0.3 % with tests/run --full, which takes half an hour more; else 1 %.
+// Largest half width of the energy interval: 0.3 % with tests/run --full, else 1 % by an eleventh of the work.
 const double kEnergyWidth = fullLevel() ? 0.003 : 0.01;
 // Largest standard error of the energies' difference: the interval's half width is at most 5.3 of them (Student's t at
 // 31 degrees of freedom). A third of its square is meant for Mitsuba, whose images serve all samplers.

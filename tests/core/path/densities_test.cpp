@@ -31,14 +31,18 @@ TEST_CASE("the weights of all techniques of a path add up to 1 and follow their 
             ++paths;
             for (const TechniqueSet& set : kSets)
                 for (const int power : {1, 2}) {
-                    double sum = 0, total = 0;
+                    // In units of the largest: far off a lobe of microfacets, densities underflow.
+                    double largest = -std::numeric_limits<double>::infinity(), sum = 0, total = 0;
                     int techniques = 0;
                     for (int s = 0; s < d.size; ++s)
-                        if (set.contains(s, d.size - s)) total += std::exp(power * d.log(s));
+                        if (set.contains(s, d.size - s)) largest = std::max(largest, d.log(s));
+                    const auto term = [&](int s) { return std::exp(power * (d.log(s) - largest)); };
+                    for (int s = 0; s < d.size; ++s)
+                        if (set.contains(s, d.size - s) && std::isfinite(d.log(s))) total += term(s);
                     for (int s = 0; s < d.size; ++s) {
                         if (!set.contains(s, d.size - s) || !std::isfinite(d.log(s))) continue;
                         const double w = d.weight(s, set, power == 1 ? Heuristic::Balance : Heuristic::Power);
-                        REQUIRE(w == Approx(std::exp(power * d.log(s)) / total).epsilon(1e-9));
+                        REQUIRE(w == Approx(term(s) / total).epsilon(1e-9).margin(1e-250));
                         sum += w;
                         ++techniques;
                     }
@@ -57,6 +61,8 @@ TEST_CASE("densities and contribution of a connection are those of its path") {
         const Scene scene = buildScene(named.dictionary);
         BidirectionalSampler sampler = samplerFor(scene);
         int paths = 0, rough = 0;
+        // The explanation is a narrow one on nearly all paths; between close vertices, glossy lobes amplify what offsets do.
+        const double narrow = std::any_of(scene.materials.begin(), scene.materials.end(), isGlossy) ? 1e-2 : 3e-3;
         forEachPath(sampler, 12, kSamples, [&](const Contribution& c, const Path& path, int) {
             INFO("technique (" << c.technique.s << ", " << c.technique.t << ")");
             PathFactors factors;
@@ -64,7 +70,7 @@ TEST_CASE("densities and contribution of a connection are those of its path") {
             const PathDensities own = densities(scene, kTestLimits, path, factors), &walked = sampler.densities();
             const double explained = explainedLogError(sampler.tracing(), path, factors);
             ++paths;
-            rough += explained > 3e-3;
+            rough += explained > narrow;
             REQUIRE(own.size == walked.size);
             REQUIRE(own.possible(c.technique.s));
             for (int s = 0; s < own.size; ++s) {
@@ -83,7 +89,6 @@ TEST_CASE("densities and contribution of a connection are those of its path") {
             REQUIRE((ratio / luminance(ratio) - value / luminance(value)).length() <= explained);
         });
         CHECK(paths > kSamples / 2);
-        // The explanation is a narrow one.
         CHECK(rough < 0.1 * paths);
     }
 }

@@ -33,9 +33,15 @@ std::string kindOf(const Scene& scene, const Path& path) {
     return kind;
 }
 
-/// Takes the singularities of connections away, so that every technique has a finite variance: 0 where vertices touch.
-double damping(const Path& path) {
+/// Takes the singularities of connections away, so that every technique has a finite variance (0 where vertices touch), and
+/// the peaks of glossy lobes, so that no estimate rests on a few large contributions: no BSDF counts for more than a white
+/// wall's.
+double damping(const Scene& scene, const Path& path) {
+    PathFactors factors;
+    if (!evaluate(scene, path, factors)) return 0;
     double h = 1;
+    for (int i = 1; i < path.length(); ++i)
+        if (!isDelta(path[i].lobe)) h *= std::min(1.0, 1 / (kPi * luminance(factors.at[size_t(i)].f)));
     for (int i = path[0].kind == Vertex::Kind::Infinite; i < path.length(); ++i) {
         const float d2 = length2(path[i].position - path[i + 1].position);
         h *= std::min(1.0, double(d2) / 0.16);
@@ -74,7 +80,7 @@ TEST_CASE("all techniques agree on every kind of path") {
         BidirectionalSampler sampler = samplerFor(scene);
         std::map<std::string, std::map<int, Moments>> kinds;
         forEachPath(sampler, 14, kSamples, [&](const Contribution& c, const Path& path, int sample) {
-            kinds[kindOf(scene, path)][c.technique.s].add(luminance(c.value) / c.weight * damping(path), sample);
+            kinds[kindOf(scene, path)][c.technique.s].add(luminance(c.value) / c.weight * damping(scene, path), sample);
         });
         for (const auto& [kind, techniques] : kinds) {
             // The surest technique against each of the others; what a technique hardly ever meets is left out.
@@ -105,7 +111,7 @@ TEST_CASE("all sets of techniques and both heuristics agree on every kind of pat
                 auto& kinds = estimates.emplace_back();
                 forEachPath(sampler, 15 + estimates.size(), kSamples,
                             [&](const Contribution& c, const Path& path, int sample) {
-                                kinds[kindOf(scene, path)].add(luminance(c.value) * damping(path), sample);
+                                kinds[kindOf(scene, path)].add(luminance(c.value) * damping(scene, path), sample);
                             });
             }
         for (size_t i = 1; i < estimates.size(); ++i)

@@ -14,6 +14,12 @@ inline double shadingCosine(const Vertex& v, const Vec3f& w) {
     return v.hasNormal() ? std::abs(double(dot(v.shadingNormal, w))) : 1;
 }
 
+/// Does the smooth lobe change within a degree? That of Diffuse does not.
+inline bool isGlossy(const Material& m) {
+    const auto glossy = [&](const Coating& coating) { return m.hasSmooth && !std::holds_alternative<Diffuse>(coating.bsdf); };
+    return glossy(m.front) || (m.back && glossy(*m.back));
+}
+
 /// How far log densities and log f of a path may be from each other, walked and recomputed.
 inline double explainedLogError(const Tracing& tracing, const Path& path, const PathFactors& factors) {
     double sum = 1e-6;
@@ -29,12 +35,14 @@ inline double explainedLogError(const Tracing& tracing, const Path& path, const 
     const auto explain = [&](const FactorRanges& ranges, double error) {
         // The range that the reference finds for a cosine error of kCosineError, taken to the actual one.
         const double scale = std::max(1.0, error / kCosineError);
-        for (const Range& range : ranges)
-            if (range.high > 0) sum += scale * std::log(range.high / std::max(range.low, 1e-300));
+        std::array<double, 5> log;
+        for (size_t i = 0; i < 5; ++i) log[i] = ranges[i].high > 0 ? scale * std::log(ranges[i].high / std::max(ranges[i].low, 1e-300)) : 0;
+        // A contribution holds one colour of f and one of the densities.
+        sum += std::max({log[0], log[1], log[2]}) + std::max(log[3], log[4]);
     };
     explain(emissionReference(tracing.scene(), path[0], exactDirection(path[0], path[1])), angle[0]);
     for (int i = 1; i < path.length(); ++i) {
-        if (!isDelta(path[i].lobe)) continue;
+        if (!isDelta(path[i].lobe) && !isGlossy(tracing.scene().materialAt(path[i]))) continue;
         explain(scatteringReference(tracing.scene(), path[i], exactDirection(path[i], path[i - 1]), exactDirection(path[i], path[i + 1])),
                 angle[size_t(i - 1)] + angle[size_t(i)]);
     }

@@ -224,7 +224,7 @@ TEST_CASE("the validator finds damage at lights without surface") {
     CHECK_FINDING(sky, "expected 1");
     Specimen bulb("point_light", [](const Path& p) { return p.size() == 4; });
     bulb.path[0].position.x += 1e-3f;
-    CHECK_FINDING(bulb, "its emitter is a point at");
+    CHECK_FINDING(bulb, "its emitter is a point without surface at");
     Specimen none("point_light", [](const Path& p) { return p.size() == 4; });
     none.path[0].shape = kNone;
     CHECK_FINDING(none, "belongs to no emitter");
