@@ -31,15 +31,24 @@ public:
         const int k = x.path.length();
         int l = -1, m = 0;
         const Deletions deletions(context.scene(), x);
-        if (!deletions.choose(random, l, m)) return p.reject = Reject::ZeroTarget, p;
+        if (!deletions.choose(random, l, m)) {
+            p.reject = Reject::ZeroTarget;
+            return p;
+        }
         const int deleted = m - l;
         const Range range(x.path, l, m, context);
         const int added = chooseAddition(deleted, k, context.limits.maxDepth, random());
-        if (added == 0) return p.reject = Reject::ZeroTarget, p;
+        if (added == 0) {
+            p.reject = Reject::ZeroTarget;
+            return p;
+        }
 
         // Which ways of sharing the new vertices out are possible depends on what both paths have in common only.
         const int fewest = range.fewestFromLight(), most = added - 1 - range.fewestFromCamera();
-        if (most < fewest) return p.reject = Reject::ZeroTarget, p;
+        if (most < fewest) {
+            p.reject = Reject::ZeroTarget;
+            return p;
+        }
         const int fromLight = fewest + random.index(most - fewest + 1), fromCamera = added - 1 - fromLight;
 
         PathEdit edit(x, l, m, added, context, p.y);
@@ -49,8 +58,10 @@ public:
             if ((p.reject = edit.growFromLight(random.nextBlock(), l < 0 && fromLight == 1)) != Reject::None) return p;
         // A delta lobe or a point light may put a vertex back where it was: that is a smaller change, and as such proposed
         // elsewhere. So every new path is made by one (l, m) only.
-        if (added > 1 && ((l >= 0 && same(p.y.path[l + 1], x.path[l + 1])) || (m > 0 && m <= k && same(p.y.path[l + added - 1], x.path[m - 1]))))
-            return p.reject = Reject::NotInvertible, p;
+        if (added > 1 && ((l >= 0 && same(p.y.path[l + 1], x.path[l + 1])) || (m > 0 && m <= k && same(p.y.path[l + added - 1], x.path[m - 1])))) {
+            p.reject = Reject::NotInvertible;
+            return p;
+        }
         if ((p.reject = edit.join()) != Reject::None) return p;
 
         p.logForward = deletions.logProbability(l, m) + logAddition(added, deleted, k, context.limits.maxDepth) +

@@ -31,7 +31,10 @@ public:
         const Perspective& sensor = *context.scene().sensor;
         const Block u = context.random.nextBlock();
         Vertex lens;
-        if (!AperturePerturbation::sample(sensor, x.path.camera(), u, lens)) return p.reject = Reject::OffScreen, p;
+        if (!AperturePerturbation::sample(sensor, x.path.camera(), u, lens)) {
+            p.reject = Reject::OffScreen;
+            return p;
+        }
         PathEdit edit(x, s, k + 1, k + 1 - s, context, p.y);
         edit.takeFromCamera(lens);
         p.y.path[s].lobe = Lobe::Smooth;

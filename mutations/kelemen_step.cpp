@@ -27,7 +27,8 @@ public:
             double xi = random() * 2;
             const double sign = xi < 1 ? 1 : -1;
             if (xi >= 1) xi -= 1;
-            return wrapped(u, sign * parameters_.largest * std::exp(-logRatio_ * xi));
+            // In single precision, at half the cost: the size of a step is random anyway.
+            return wrapped(u, sign * parameters_.largest * double(std::exp(float(-logRatio_ * xi))));
         });
         return p;
     }
@@ -35,8 +36,9 @@ public:
     std::optional<double> logDensity(const Sample& from, const Sample& to, StepContext&) const override {
         return logMoves(from.u, to.u, [this](double d) {
             d = std::abs(d);
-            // Wrapping rounds to the numbers' last place; the support is taken that much wider.
-            if (d < parameters_.smallest - 1e-12 || d > parameters_.largest + 1e-12) return -std::numeric_limits<double>::infinity();
+            // The support is wider by the rounding of the size, and of wrapping to the numbers' last place.
+            constexpr double kRounding = 1e-6;
+            if (d < parameters_.smallest * (1 - kRounding) - 1e-12 || d > parameters_.largest * (1 + kRounding) + 1e-12) return -std::numeric_limits<double>::infinity();
             return -std::log(2 * d * logRatio_);
         });
     }

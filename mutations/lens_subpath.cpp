@@ -34,15 +34,27 @@ public:
         Subpath walk;
         const Vec2f raster = scene.sensor->sampleRaster(numbers(NumberStream::Camera, 0));
         walkFromCamera(context.tracing, endless, 2, raster, numbers, walk);
-        if (walk.size < 2) return p.reject = Reject::Missed, p;
+        if (walk.size < 2) {
+            p.reject = Reject::Missed;
+            return p;
+        }
         const int most = context.limits.maxDepth + 1 - m;
         for (;;) {
             const Block& u = numbers(NumberStream::Camera, walk.size - 1);
             if (u[2] >= 1 - stopping(scene, walk.vertex[size_t(walk.size - 1)], walk.vertex[size_t(walk.size - 2)])) break;
-            if (walk.size >= most) return p.reject = Reject::ZeroTarget, p;
-            if (!extendWalk(context.tracing, endless, From::Camera, u, walk)) return p.reject = Reject::Missed, p;
+            if (walk.size >= most) {
+                p.reject = Reject::ZeroTarget;
+                return p;
+            }
+            if (!extendWalk(context.tracing, endless, From::Camera, u, walk)) {
+                p.reject = Reject::Missed;
+                return p;
+            }
         }
-        if (walk.size > most) return p.reject = Reject::ZeroTarget, p;
+        if (walk.size > most) {
+            p.reject = Reject::ZeroTarget;
+            return p;
+        }
 
         PathEdit edit(x, m - 1, k + 1, walk.size + 1, context, p.y);
         for (int i = 0; i < walk.size; ++i) edit.takeFromCamera(walk.vertex[size_t(i)]);

@@ -2,6 +2,7 @@
 // The film: what the samples of one worker add up to. Sums are exact in fixed point, so films merge in any order.
 
 #include "core/base/fixed_sum.h"
+#include "core/base/large_pages.h"
 #include "core/image/filter.h"
 #include "core/image/image.h"
 
@@ -24,7 +25,7 @@ public:
     }
     void add(const FilmPlane& other);
     /// Both ends: a pixel may lie on two cache lines.
-    void fetch(size_t pixel) const {
+    [[gnu::always_inline]] void fetch(size_t pixel) const {
         __builtin_prefetch(&sums_[pixel], 1);
         __builtin_prefetch(&sums_[pixel].back(), 1);
     }
@@ -33,7 +34,7 @@ public:
     }
 
 private:
-    std::vector<std::array<FixedSum, 3>> sums_;
+    std::vector<std::array<FixedSum, 3>, LargePageAllocator<std::array<FixedSum, 3>>> sums_;
 };
 
 /// Two estimators side by side, whose expectations add up to the image:
@@ -52,8 +53,8 @@ public:
     void countSample(int pixel);
     /// Spreads a value over the pixels around a raster position (pixels from the upper left corner).
     void splat(const Vec2f& raster, const Spectrum& value);
-    /// Has the memory around a raster position brought near.
-    void fetchSplats(const Vec2f& raster) const {
+    /// Has the memory around a raster position brought near. (Inlined, as GCC leaves out calls without effect.)
+    [[gnu::always_inline]] void fetchSplats(const Vec2f& raster) const {
         const int x = int(raster.x), y = int(raster.y);
         if (x >= 0 && x < width_ && y >= 0 && y < height_ && !splats_.empty()) splats_.fetch(size_t(y * width_ + x));
     }

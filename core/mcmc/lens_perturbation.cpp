@@ -19,9 +19,15 @@ Proposal LensPerturbation::propose(const Sample& x, int m, StepContext& context)
     const Perspective& sensor = *scene.sensor;
     const Block u = context.random.nextBlock();
     const Vec2f raster = raster_.sample(x.splats[0].raster, u);
-    if (!sensor.contains(raster)) return p.reject = Reject::OffScreen, p;
+    if (!sensor.contains(raster)) {
+        p.reject = Reject::OffScreen;
+        return p;
+    }
     Vertex lens;
-    if (!AperturePerturbation::sample(sensor, x.path.camera(), u, lens)) return p.reject = Reject::OffScreen, p;
+    if (!AperturePerturbation::sample(sensor, x.path.camera(), u, lens)) {
+        p.reject = Reject::OffScreen;
+        return p;
+    }
 
     PathEdit edit(x, m - 1, k + 1, k - m + 2, context, p.y);
     edit.takeFromCamera(lens);
@@ -37,16 +43,24 @@ Proposal LensPerturbation::propose(const Sample& x, int m, StepContext& context)
         if (p.reject != Reject::None) return p;
     }
     if ((p.reject = edit.join()) != Reject::None) return p;
-    p.logForward = logDensity(scene, x, p.y, m);
-    p.logReverse = logDensity(scene, p.y, x, m);
+    const auto atX = response(scene, x), atY = response(scene, p.y);
+    p.logForward = logDensity(scene, x, atX, p.y, atY, m);
+    p.logReverse = logDensity(scene, p.y, atY, x, atX, m);
     return p;
 }
 
+Perspective::Response LensPerturbation::response(const Scene& scene, const Sample& s) {
+    return scene.sensor->respond(s.path.camera(), -s.factors.edge[s.path.length() - 1].direction);
+}
+
 double LensPerturbation::logDensity(const Scene& scene, const Sample& from, const Sample& to, int m) const {
+    return logDensity(scene, from, response(scene, from), to, response(scene, to), m);
+}
+
+double LensPerturbation::logDensity(const Scene& scene, const Sample& from, const Perspective::Response& a, const Sample& to,
+                                    const Perspective::Response& b, int m) const {
     const int k = to.path.length();
     const Perspective& sensor = *scene.sensor;
-    const auto respond = [&](const Sample& s) { return sensor.respond(s.path.camera(), -s.factors.edge[k - 1].direction); };
-    const Perspective::Response a = respond(from), b = respond(to);
     if (!(a.pdf > 0 && b.pdf > 0)) return -std::numeric_limits<double>::infinity();
     // fromCamera(k−1) is the density of a uniform raster position, 1 / window area per pixel².
     double sum = std::log(raster_.pdf(a.raster, b.raster) * sensor.windowArea() * to.factors.fromCamera(k - 1) *

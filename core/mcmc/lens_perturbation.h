@@ -22,6 +22,10 @@ public:
     double logDensity(const Scene& scene, const Sample& from, const Sample& to, int m) const;
 
 private:
+    static Perspective::Response response(const Scene& scene, const Sample& s);
+    double logDensity(const Scene& scene, const Sample& from, const Perspective::Response& a, const Sample& to, const Perspective::Response& b,
+                      int m) const;
+
     RasterPerturbation raster_;
     AnglePerturbation direction_;
 };

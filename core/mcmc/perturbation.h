@@ -6,16 +6,19 @@
 namespace ulam {
 
 /// A length between `smallest` and `largest`, its logarithm uniform; turned by a uniform angle it is a step in the plane.
-struct ExponentialStep {
-    double smallest, largest;
-    double rounding;  ///< of the single-precision geometry a length is measured in; widens the ends
+class ExponentialStep {
+public:
+    ExponentialStep() = default;
+    /// Rounding: of the single-precision geometry a length is measured in; widens the ends.
+    ExponentialStep(double smallest, double largest, double rounding)
+        : largest_(largest), from_(smallest - rounding), to_(largest + rounding), logRatio_(std::log(largest / smallest)) {}
 
-    double sample(double u) const { return largest * std::exp(-std::log(largest / smallest) * u); }
+    double sample(double u) const { return largest_ * std::exp(-logRatio_ * u); }
     /// Density of the length.
-    double pdf(double length) const {
-        if (!(length > 0 && length > smallest - rounding && length < largest + rounding)) return 0;
-        return 1 / (length * std::log(largest / smallest));
-    }
+    double pdf(double length) const { return length > 0 && length > from_ && length < to_ ? 1 / (length * logRatio_) : 0; }
+
+private:
+    double largest_ = 0, from_ = 0, to_ = 0, logRatio_ = 0;
 };
 
 /// Steps of the raster position.
@@ -39,7 +42,7 @@ struct RasterPerturbation {
 /// Steps of the point on a thin lens. A pinhole stays where it is.
 struct AperturePerturbation {
     /// In units of the aperture's radius.
-    static constexpr ExponentialStep kStep{0.01, 1, 2e-6};
+    static inline const ExponentialStep kStep{0.01, 1, 2e-6};
 
     /// From u[2] and u[3]; false where the step leaves the lens.
     static bool sample(const Perspective& sensor, const Vertex& from, const Block& u, Vertex& to) {

@@ -66,13 +66,12 @@ bool connect(Tracing& tracing, const PathLimits& limits, const Subpath& light, i
     if (!(edge.geometry() > 0)) return false;
 
     Scattering atY = Scattering::none(), atZ = Scattering::none();
-    Edge beforeY = edge, afterZ = edge;
+    const Edge &beforeY = s > 1 ? light.back[s - 1] : edge, &afterZ = t > 1 ? camera.back[t - 1] : edge;
     if (s == 1) {
         const Emission e = emission(scene, y, edge.direction);
         atY.f = e.radiance;
         atY.pdfToCamera = e.pdf;
     } else {
-        beforeY = light.back[s - 1];
         atY = scatter(scene, y, Lobe::Smooth, beforeY.direction, edge.direction);
     }
     if (isBlack(atY.f)) return false;
@@ -82,7 +81,6 @@ bool connect(Tracing& tracing, const PathLimits& limits, const Subpath& light, i
         atZ.f = Spectrum(response.importance);
         atZ.pdfToLight = response.pdf;
     } else {
-        afterZ = camera.back[t - 1];
         atZ = scatter(scene, z, Lobe::Smooth, -edge.direction, afterZ.direction);
     }
     if (isBlack(atZ.f)) return false;
@@ -101,7 +99,7 @@ bool connect(Tracing& tracing, const PathLimits& limits, const Subpath& light, i
         d.directLight = light.forward[0];
         d.fromLight[0] = emissionPositionPdf(scene, light.vertex[0]);
     } else {
-        d.directLight = directLightPdf(scene, light.vertex[1], light.vertex[0]);
+        d.directLight = light.direct;
     }
     return true;
 }

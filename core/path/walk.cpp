@@ -61,6 +61,7 @@ void walkFromLight(Tracing& tracing, const PathLimits& limits, int vertices, Num
     const bool hit = p.vertex[0].atInfinity() ? tracing.nextFrom(ray.origin, ray.direction, p.vertex[1])
                                             : tracing.next(p.vertex[0], ray.direction, p.vertex[1]);
     if (!hit || !p.vertex[1].onSurface()) return;
+    p.direct = directLightPdf(scene, p.vertex[1], p.vertex[0]);
     arrive(scene, limits, p, p.throughput[0] * e0.radiance * (cosine(p.vertex[0], ray.direction) / ray.pdf), ray.pdf);
     while (p.size < vertices && extendWalk(tracing, limits, From::Light, numbers(NumberStream::Light, p.size), p)) {}
 }

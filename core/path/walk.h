@@ -26,6 +26,7 @@ struct PathLimits {
 /// A walk's vertices, its own end first, and beside each vertex what the walk knows about it.
 struct Subpath {
     int size = 0;
+    double direct = 0;  ///< of a light walk: density of vertex 0 by next-event estimation from vertex 1
     std::array<Vertex, kMaxVertices + 1> vertex;
     std::array<Edge, kMaxVertices + 1> back;  ///< from the vertex to the one before it; from vertex 1 on
     /// Π f-factors / densities up to the arrival at the vertex; L_e and W_e included from vertex 1 on.

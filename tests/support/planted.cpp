@@ -36,12 +36,18 @@ public:
         const Scene& scene = context.scene();
         const int k = x.path.length();
         const Vec2f raster = step_.sample(x.splats[0].raster, context.random.nextBlock());
-        if (!scene.sensor->contains(raster)) return p.reject = Reject::OffScreen, p;
+        if (!scene.sensor->contains(raster)) {
+            p.reject = Reject::OffScreen;
+            return p;
+        }
         PathEdit edit(x, k - 2, k, 2, context, p.y);
         if ((p.reject = edit.growFromCameraAlong(scene.sensor->direction(x.path.camera(), raster))) != Reject::None) return p;
         if constexpr (bug == Bug::Blind) {
             p.y.path[k - 1].lobe = p.y.path[k - 2].lobe = Lobe::Smooth;
-            if (!evaluate(scene, p.y.path, k - 2, k, p.y.factors)) return p.reject = Reject::ZeroTarget, p;
+            if (!evaluate(scene, p.y.path, k - 2, k, p.y.factors)) {
+                p.reject = Reject::ZeroTarget;
+                return p;
+            }
         } else {
             if ((p.reject = edit.join()) != Reject::None) return p;
         }
