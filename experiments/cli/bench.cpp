@@ -10,9 +10,14 @@
 namespace ulam {
 namespace {
 
-// One glass sphere in the Cornell box; paths of up to 8 edges and no Russian roulette, so that nothing is gained by
-// ending paths early.
-constexpr const char* kScene = R"({"type": "cornell_box", "variant": "glass_sphere"})";
+// A few triangles and a sphere, where what is around the rays costs as much as they do; and a million triangles, where rays
+// dominate. Paths have up to 8 edges and there is no Russian roulette, so that nothing is gained by ending paths early.
+struct BenchScene {
+    const char* name;
+    const char* description;
+};
+constexpr BenchScene kScenes[] = {{"cornell_box", R"({"type": "cornell_box", "variant": "glass_sphere"})"},
+                                  {"terrain", R"({"type": "terrain"})"}};
 constexpr const char* kFilm = R"({"width": 512, "height": 512, "rfilter": {"type": "box"}})";
 constexpr const char* kLimits = R"("max_depth": 8, "rr_depth": 1000000)";
 
@@ -106,34 +111,41 @@ Rates measure(const Scene& scene, const Case& c, int threads, double seconds) {
     return all[kRepeats / 2];
 }
 
-void bench(double seconds, bool json) {
-    const auto description = SceneDescription::fromNode(JsonDocument::fromText(kScene, "bench").root(), ".");
+/// Appends a record of each case.
+void benchScene(const BenchScene& which, double seconds, bool json, Json& cases) {
+    const auto description = SceneDescription::fromNode(JsonDocument::fromText(which.description, "bench").root(), ".");
     const Scene scene = description.build(Json::parse(kFilm));
-    Json out = {{"cases", Json::array()}};
-    if (!json)
-        fmt::print("{:<20} {:>7} {:>11} {:>11} {:>10} {:>14} {:>14} {:>9}\n", "sampler", "threads", "rays/s", "units/s",
-                   "rays/unit", "rays/ceiling", "units/ceiling", "speed-up");
     for (const Case& c : kCases) {
         double single = 0;  // units per ceiling ray: what two threads do more is not the machine's change of pace
         for (int threads = 1; threads <= 2; ++threads) {
             const Rates r = measure(scene, c, threads, seconds);
             const double fraction = r.units / r.ceiling;
             if (threads == 1) single = fraction;
-            out["cases"].push_back({{"sampler", c.name},
-                                    {"threads", threads},
-                                    {"embree_ceiling_rays_per_second", r.ceiling},
-                                    {"rays_per_second", r.rays},
-                                    {"units_per_second", r.units},
-                                    {"rays_per_unit", r.raysPerUnit},
-                                    {"rays_per_ceiling_ray", r.fraction(threads)},
-                                    {"units_per_ceiling_ray", fraction / threads},
-                                    {"speedup", fraction / single}});
+            cases.push_back({{"scene", which.name},
+                             {"sampler", c.name},
+                             {"threads", threads},
+                             {"embree_ceiling_rays_per_second", r.ceiling},
+                             {"rays_per_second", r.rays},
+                             {"units_per_second", r.units},
+                             {"rays_per_unit", r.raysPerUnit},
+                             {"rays_per_ceiling_ray", r.fraction(threads)},
+                             {"units_per_ceiling_ray", fraction / threads},
+                             {"speedup", fraction / single}});
             if (!json)
-                fmt::print("{:<20} {:>7} {:>11.3e} {:>11.3e} {:>10.2f} {:>14.3f} {:>14.4f} {:>9.2f}\n", c.name, threads,
-                           r.rays, r.units, r.raysPerUnit, r.fraction(threads), fraction / threads, fraction / single);
+                fmt::print("{:<12} {:<18} {:>7} {:>11.3e} {:>11.3e} {:>10.2f} {:>13.3f} {:>14.4f} {:>9.2f}\n", which.name, c.name, threads, r.rays,
+                           r.units, r.raysPerUnit, r.fraction(threads), fraction / threads, fraction / single);
             std::fflush(stdout);
         }
     }
+}
+
+void bench(const std::string& only, double seconds, bool json) {
+    Json out = {{"cases", Json::array()}};
+    if (!json)
+        fmt::print("{:<12} {:<18} {:>7} {:>11} {:>11} {:>10} {:>13} {:>14} {:>9}\n", "scene", "sampler", "threads", "rays/s", "units/s",
+                   "rays/unit", "rays/ceiling", "units/ceiling", "speed-up");
+    for (const BenchScene& scene : kScenes)
+        if (only.empty() || only == scene.name) benchScene(scene, seconds, json, out["cases"]);
     if (json)
         fmt::print("{}\n", dump(out));
     else
@@ -149,11 +161,15 @@ void addBenchCommand(CLI::App& app) {
         app.add_subcommand("bench", "Measure rays, samples and mutations a second against Embree's own speed");
     auto seconds = std::make_shared<double>(5);
     auto json = std::make_shared<bool>(false);
+    auto only = std::make_shared<std::string>();
+    std::vector<std::string> names;
+    for (const BenchScene& scene : kScenes) names.emplace_back(scene.name);
+    command->add_option("--scene", *only, "one of them; both unless given")->check(CLI::IsMember(names));
     command->add_option("--seconds", *seconds, "of each measurement")
         ->capture_default_str()
         ->check(CLI::Range(0.1, 600.0));
     command->add_flag("--json", *json, "JSON on the standard output");
-    command->callback([seconds, json] { bench(*seconds, *json); });
+    command->callback([only, seconds, json] { bench(*only, *seconds, *json); });
 }
 
 }  // namespace ulam
