@@ -3,6 +3,7 @@
 #include "core/path/primary_map.h"
 
 #include "tests/core/path/random_paths.h"
+#include "tests/core/path/tolerance.h"
 
 using namespace ulam;
 
@@ -14,16 +15,16 @@ TEST_CASE("numbers found for a path by any of its techniques make it again") {
         BidirectionalSampler sampler = samplerFor(scene);
         Tracing tracing(scene);
         Random random(makeKey(31), 0, 0);
+        // Towards the far tails of glossy lobes, numbers lie closer together than doubles do, and inversion gets lost. Chains
+        // take a technique as often as the balance heuristic says: these less than once in a million.
+        const double rarest = std::any_of(scene.materials.begin(), scene.materials.end(), isGlossy) ? 1e-6 : 0;
         int tried = 0, lost = 0, far = 0;
         forEachPath(sampler, 13, kSamples, [&](const Contribution& c, const Path& x, int) {
             PathFactors factors;
             if (!evaluate(scene, x, factors)) return;
             const PathDensities d = densities(scene, kTestLimits, x, factors);
             for (int s = 0; s < d.size; ++s) {
-                // Chains take a technique as often as the balance heuristic says. One that would make the path by the far
-                // tail of a microfacet lobe, nobody ever asks for: the numbers of such tails lie closer together than
-                // doubles do.
-                if (!std::isfinite(d.log(s)) || d.weight(s, TechniqueSet{}, Heuristic::Balance) < 1e-6) continue;
+                if (!std::isfinite(d.log(s)) || d.weight(s, TechniqueSet{}, Heuristic::Balance) < rarest) continue;
                 ++tried;
                 INFO("path by (" << c.technique.s << ", " << c.technique.t << "), inverted for s = " << s << " of "
                                  << d.size << " vertices");
