@@ -40,8 +40,7 @@ public:
     void sample(const Vec2f& raster, Numbers& numbers, Visitor&& visit) {
         const PathLimits& limits = options_.limits;
         const TechniqueSet& set = options_.techniques;
-        const bool needsLight = set.connect || set.lightImage;
-        walkFromLight(tracing_, limits, needsLight ? limits.maxDepth : 0, numbers, light_);
+        walkFromLight(tracing_, limits, set.walkFromLight() ? limits.maxDepth : 0, numbers, light_);
         walkFromCamera(tracing_, limits, set.hitLight || set.nextEvent || set.connect ? limits.maxDepth + 1 : 1, raster, numbers, camera_);
 
         auto report = [&](int s, int t, const Vec2f& where) {
@@ -52,7 +51,7 @@ public:
             if (set.hitLight && hitLight(tracing_, limits, camera_, t, connection_)) report(0, t, raster);
             if (!camera_.vertex[t - 1].onSurface() || t == limits.maxDepth + 1) continue;
             if (set.nextEvent && isSmooth(camera_.vertex[t - 1])) {
-                sampleDirectLight(tracing_.scene(), camera_.vertex[t - 1], numbers(NumberStream::Connect, t), direct_);
+                sampleDirectLight(tracing_.scene(), camera_.vertex[t - 1], numbers(NumberStream::Connect, t - 2), direct_);
                 if (connect(tracing_, limits, direct_, 1, camera_, t, connection_)) report(1, t, raster);
             }
             if (!set.connect || !isSmooth(camera_.vertex[t - 1])) continue;

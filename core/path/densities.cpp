@@ -14,7 +14,7 @@ double PathDensities::log(int s) const {
 
 double PathDensities::weight(int s, const TechniqueSet& set, Heuristic heuristic) const {
     const auto term = [heuristic](double ratio) { return heuristic == Heuristic::Balance ? ratio : ratio * ratio; };
-    const int last = set.connect || set.lightImage ? size - 1 : 1;
+    const int last = set.walkFromLight() ? size - 1 : 1;
     // Two neighbouring techniques differ in the end that makes one vertex. All divisions at once: they do not depend on
     // each other.
     std::array<double, kMaxVertices> step;

@@ -17,6 +17,7 @@ struct TechniqueSet {
     bool nextEvent = true;      ///< s = 1, t ≥ 2
     bool connect = true;        ///< s ≥ 2, t ≥ 2
     bool lightImage = true;     ///< t = 1
+    bool walkFromLight() const { return connect || lightImage; }
     bool contains(int s, int t) const {
         if (t == 1) return lightImage && s >= 1;
         return s == 0 ? hitLight : s == 1 ? nextEvent : connect;

@@ -12,7 +12,7 @@ bool makePath(Tracing& tracing, const PathLimits& limits, Technique technique, P
     const Vec2f raster = scene.sensor->sampleRaster(numbers(NumberStream::Camera, 0));
     walkFromCamera(tracing, limits, t, raster, numbers, camera);
     if (camera.size < t) return false;
-    if (s == 1 && t >= 2) sampleDirectLight(scene, camera.vertex[t - 1], numbers(NumberStream::Connect, t), light);
+    if (s == 1 && t >= 2) sampleDirectLight(scene, camera.vertex[t - 1], numbers(NumberStream::Connect, t - 2), light);
     else walkFromLight(tracing, limits, s, numbers, light);
     if (light.size < s) return false;
     path.resize(s + t);
@@ -64,7 +64,7 @@ public:
     }
 
     bool nextEvent(int t) {
-        while (u_.size(NumberStream::Connect) < t) u_.append(NumberStream::Connect, random_.nextBlock());
+        while (u_.size(NumberStream::Connect) < t - 2) u_.append(NumberStream::Connect, random_.nextBlock());
         u_.append(NumberStream::Connect, emitterNumbers());
         return true;
     }

@@ -5,7 +5,7 @@
 // the rest of the path is:
 //   Light   block 0: (emitter choice, position, position, –); block i+1: scattering at the walk's vertex i
 //   Camera  block 0: (raster x, raster y, lens, lens);        block i: scattering at the walk's vertex i
-//   Connect block t: next-event estimation from the camera walk's vertex t−1, as Light block 0
+//   Connect block i: next-event estimation from the camera walk's vertex i+1, as Light block 0
 //   (scattering: direction, direction, lobe, Russian roulette)
 
 #include "core/base/random.h"

@@ -22,6 +22,7 @@ public:
             sink.add(c, feature);
         });
     }
+    bool walksFromLight() const override { return sampler_.options().techniques.walkFromLight(); }
     uint64_t rays() const override { return sampler_.tracing().rays(); }
 
 private:
@@ -89,6 +90,7 @@ struct IndependentRun::Worker : ContributionSink {
 IndependentRun::IndependentRun(const RunContext& context, const SourceMaker& makeSource, bool techniqueImages)
     : scene_(context.scene),
       key_(context.key),
+      numbers_(context.key, 1),
       order_(context.scene.sensor->width(), context.scene.sensor->height(), context.scene.filter) {
     for (int i = 0; i < context.workers; ++i) workers_.push_back(std::make_unique<Worker>(scene_, makeSource(), techniqueImages));
 }
@@ -100,8 +102,9 @@ void IndependentRun::work(int worker, uint64_t begin, uint64_t end) {
     for (uint64_t i = begin; i < end; ++i) {
         Random random(key_, 0, i);
         w.u.clear();
-        Numbers numbers(w.u, random);
         w.pixel = order_.pixel(i);
+        numbers_.begin(uint32_t(w.pixel), uint32_t(i / uint64_t(order_.pixels())), w.source->walksFromLight(), w.u);
+        Numbers numbers(w.u, random);
         w.sum = Spectrum(0.0);
         w.source->sample(order_.raster(w.pixel, numbers(NumberStream::Camera, 0)), numbers, w);
         w.film.countSample(w.pixel);

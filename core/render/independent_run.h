@@ -1,9 +1,10 @@
 #pragma once
 // A run of independent samples: path tracing, particle tracing, bidirectional path tracing and whatever else makes an
-// image from samples that know nothing of each other.
+// image from samples that know nothing of each other, but for a pixel's, whose numbers are spread evenly (pixel_numbers.h).
 
 #include "core/image/film.h"
 #include "core/path/bidirectional.h"
+#include "core/render/pixel_numbers.h"
 #include "core/render/sampler.h"
 
 namespace ulam {
@@ -22,6 +23,7 @@ class SampleSource {
 public:
     virtual ~SampleSource() = default;
     virtual void sample(const Vec2f& raster, Numbers& numbers, ContributionSink& sink) = 0;
+    virtual bool walksFromLight() const = 0;
     virtual uint64_t rays() const = 0;
 };
 
@@ -64,6 +66,7 @@ private:
 
     const Scene& scene_;
     RandomKey key_;
+    PixelNumbers numbers_;
     PixelOrder order_;
     std::vector<std::unique_ptr<Worker>> workers_;
 };

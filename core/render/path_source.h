@@ -22,6 +22,7 @@ public:
     PathSource(const Scene& scene, const PathLimits& limits, Heuristic heuristic, const Guide& guide = {})
         : limits_(limits), heuristic_(heuristic), guide_(guide), tracing_(scene) {}
 
+    bool walksFromLight() const override { return false; }
     uint64_t rays() const override { return tracing_.rays(); }
 
     void sample(const Vec2f& raster, Numbers& numbers, ContributionSink& sink) override {
@@ -46,7 +47,7 @@ public:
             const bool smooth = scene.materialAt(*v).hasSmooth;
             double share = 0;
             if constexpr (Guide::present) share = smooth ? guide_.share(*v) : 0;
-            if (smooth) addDirectLight(*v, back, share, q, depth, numbers(NumberStream::Connect, depth + 1), sink);
+            if (smooth) addDirectLight(*v, back, share, q, depth, numbers(NumberStream::Connect, depth - 1), sink);
 
             if (!(u[3] < q) || !scatterOn(*v, back.direction, share, q, u, numbers, depth, w)) return;
             std::swap(previous, v);
