@@ -198,6 +198,12 @@ JsonDocument JsonDocument::fromText(std::string text, std::string name) {
     return {std::move(value), std::make_shared<const JsonSource>(JsonSource{std::move(name), std::move(shared), {}})};
 }
 
+JsonDocument JsonDocument::fromParts(Json value, std::string name, std::vector<std::pair<std::string, std::string>> places) {
+    JsonSource source{std::move(name), std::make_shared<const std::string>(), {}};
+    for (auto& [pointer, place] : places) source.changes.push_back({std::move(pointer), std::move(place)});
+    return {std::make_shared<const Json>(std::move(value)), std::make_shared<const JsonSource>(std::move(source))};
+}
+
 JsonDocument JsonDocument::fromFile(const std::filesystem::path& path) {
     return fromText(readFile(path, kMaxJsonBytes), path.string());
 }

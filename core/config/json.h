@@ -95,6 +95,9 @@ class JsonDocument {
 public:
     /// `name` stands for the file in messages.
     static JsonDocument fromText(std::string text, std::string name);
+    /// A value read from a text that is not JSON. `places`: JSON pointers and what messages say of them
+    /// ("scene.xml:3:5"); of those that cover a value the last one counts.
+    static JsonDocument fromParts(Json value, std::string name, std::vector<std::pair<std::string, std::string>> places);
     /// Fails with InputMissing where the file cannot be read.
     static JsonDocument fromFile(const std::filesystem::path& path);
 

@@ -14,20 +14,25 @@ constexpr std::size_t kLargestFile = std::size_t(4) << 30;
 
 }  // namespace
 
-std::filesystem::path LoadContext::locate(const JsonNode& filename) const {
-    const std::filesystem::path path = filename.string();
-    if (path.empty()) filename.expected("the name of a file");
-    if (path.is_absolute() || std::find(path.begin(), path.end(), "..") != path.end())
-        filename.fail("the path leaves the folder of the scene", "give a path below that folder");
+SceneFile findSceneFile(const std::filesystem::path& folder, const std::string& name) {
     namespace fs = std::filesystem;
-    const fs::path file = folder / path;
+    const fs::path path = name, file = folder / path;
+    if (path.empty()) return {file, "the name of the file is empty", ""};
+    if (path.is_absolute() || std::find(path.begin(), path.end(), "..") != path.end())
+        return {file, "the path leaves the folder of the scene", "give a path below that folder"};
     std::error_code failed;
     // Links may lead out of the folder too, and pipes and devices need not end.
     const fs::path inside = fs::relative(fs::weakly_canonical(file, failed), fs::weakly_canonical(folder / ".", failed), failed);
     if (failed || (!inside.empty() && *inside.begin() == ".."))
-        filename.fail("the path leaves the folder of the scene by a link", "give a file below that folder");
-    if (fs::exists(file, failed) && !fs::is_regular_file(file, failed)) filename.fail(fmt::format("{} is no regular file", file.string()));
-    return file;
+        return {file, "the path leaves the folder of the scene by a link", "give a file below that folder"};
+    if (fs::exists(file, failed) && !fs::is_regular_file(file, failed)) return {file, fmt::format("{} is no regular file", file.string()), ""};
+    return {file, "", ""};
+}
+
+std::filesystem::path LoadContext::locate(const JsonNode& filename) const {
+    const SceneFile file = findSceneFile(folder, filename.string());
+    if (!file.refusal.empty()) filename.fail(file.refusal, file.hint);
+    return file.path;
 }
 
 std::string LoadContext::read(const JsonNode& filename) {

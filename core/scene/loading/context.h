@@ -10,6 +10,14 @@
 
 namespace ulam {
 
+/// A file that a scene names, or why it may not name it.
+struct SceneFile {
+    std::filesystem::path path;
+    std::string refusal, hint;  ///< empty: the path is good, though the file may be missing
+};
+/// Paths start at the scene's folder and may not leave it, by links neither; what is no regular file is refused.
+SceneFile findSceneFile(const std::filesystem::path& folder, const std::string& name);
+
 struct LoadContext {
     std::filesystem::path folder;  ///< of the scene file
     std::vector<std::string> warnings;

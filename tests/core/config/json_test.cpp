@@ -203,6 +203,15 @@ TEST_CASE("a value made in memory has a pointer and no position", "[json]") {
     CHECK(errorOf([&] { node.at("a").at("b").number(); }).message == "expected a number, found nan at /a/b");
 }
 
+TEST_CASE("values of a document made from parts have the place of the innermost part that covers them", "[json]") {
+    const auto document = JsonDocument::fromParts(Json::parse(R"({"a": {"b": 1, "c": [2]}, "ab": 3})"), "scene.xml",
+                                                  {{"", "scene.xml:1:1"}, {"/a", "scene.xml:2:3"}, {"/a/b", "scene.xml:4:5"}});
+    CHECK(document.root().where() == "scene.xml:1:1");
+    CHECK(document.root().at("a").at("b").where() == "scene.xml:4:5 (/a/b)");
+    CHECK(document.root().at("a").at("c")[0].where() == "scene.xml:2:3 (/a/c/0)");
+    CHECK(document.root().at("ab").where() == "scene.xml:1:1 (/ab)");
+}
+
 TEST_CASE("a node outlives its document", "[json]") {
     const JsonNode node = document(R"({"a": {"b": "text"}})").root().at("a").at("b");
     CHECK(node.string() == "text");
