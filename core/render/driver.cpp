@@ -25,7 +25,7 @@ constexpr uint64_t kChunksPerRayRound = 32;
 class Driver {
 public:
     Driver(const Scene& scene, const Sampler& sampler, const RenderOptions& options)
-        : options_(options), pixels_(double(scene.sensor->width()) * scene.sensor->height()) {
+        : options_(options), substitutions_(scene.substitutions), pixels_(double(scene.sensor->width()) * scene.sensor->height()) {
         const Budget& b = options.budget;
         if (!b.seconds && !b.spp && !b.mutations && !b.rays) fail(ExitCode::Usage, "a render needs a budget: time, spp, mutations or rays");
         if (b.mutations && !sampler.isChainSampler()) fail(ExitCode::InvalidConfig, "a budget of mutations needs a sampler with Markov chains");
@@ -60,7 +60,8 @@ public:
         result.units = units_;
         result.image = run_->develop(units_);
         run_->report(units_, result.statistics);
-        result.statistics.biasLedger = run_->biasLedger();
+        result.statistics.biasLedger = substitutions_;
+        result.statistics.biasLedger.insert(result.statistics.biasLedger.end(), run_->biasLedger().begin(), run_->biasLedger().end());
         result.statistics.seedingSeconds = seeding;
         result.statistics.seedingRays = seedingRays;
         return result;
@@ -111,6 +112,7 @@ private:
     }
 
     const RenderOptions& options_;
+    const std::vector<std::string>& substitutions_;
     double pixels_;
     std::unique_ptr<SamplerRun> run_;
     uint64_t unitLimit_ = kUnlimited, units_ = 0;

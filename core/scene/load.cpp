@@ -2,6 +2,7 @@
 
 #include <map>
 
+#include "core/base/error.h"
 #include "core/base/sha256.h"
 #include "core/scene/loading/emitters.h"
 #include "core/scene/loading/entries.h"
@@ -171,6 +172,9 @@ Scene SceneBuilder::build(const JsonNode& film) {
     for (const std::string& file : context_.fileHashes) content += file;
     scene_.hash = sha256(content);
     scene_.warnings = std::move(context_.warnings);
+    if (const auto substitutions = root_.find("$substitutions"))
+        for (const JsonNode& note : substitutions->elements()) scene_.substitutions.push_back(note.string());
+    scene_.warnings.insert(scene_.warnings.end(), scene_.substitutions.begin(), scene_.substitutions.end());
     scene_.finalize();
     return std::move(scene_);
 }
@@ -183,8 +187,15 @@ struct SceneDescription::Content {
     std::unique_ptr<Generator> generator;
 };
 
+JsonDocument readSceneDocument(const std::filesystem::path& file, const XmlOptions& options) {
+    if (file.extension() == ".xml") return readMitsubaXml(file, options);
+    if (!options.definitions.empty() || options.lenient)
+        fail(ExitCode::Usage, "-D and --lenient are for Mitsuba's XML, and {} is none", inQuotes(file.string()));
+    return JsonDocument::fromFile(file);
+}
+
 SceneDescription SceneDescription::fromFile(const std::filesystem::path& file) {
-    const JsonDocument document = JsonDocument::fromFile(file);
+    const JsonDocument document = readSceneDocument(file);
     // Not the name of another file: these could go round in a ring.
     if (document.root().isString()) document.root().expected("a scene or a generator, an object with a \"type\"");
     return fromNode(document.root(), file.parent_path());

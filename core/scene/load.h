@@ -2,6 +2,7 @@
 // From a scene dictionary (Mitsuba 3's vocabulary as JSON) to a Scene. One loader for every source of scenes.
 
 #include "core/config/json.h"
+#include "core/scene/mitsuba/xml.h"
 #include "core/scene/generator.h"
 #include "core/scene/scene.h"
 
@@ -11,10 +12,13 @@
 
 namespace ulam {
 
+/// The scene dictionary in a file: JSON, or Mitsuba's XML where the name ends in .xml.
+JsonDocument readSceneDocument(const std::filesystem::path& file, const XmlOptions& options = {});
+
 /// A scene dictionary with the place it came from. A generator is expanded on construction.
 class SceneDescription {
 public:
-    /// From a file (JSON).
+    /// From a file, see readSceneDocument.
     static SceneDescription fromFile(const std::filesystem::path& file);
     /// From a dictionary inside another document; a string is a path relative to `folder`.
     static SceneDescription fromNode(const JsonNode& node, const std::filesystem::path& folder);

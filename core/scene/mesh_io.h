@@ -17,6 +17,13 @@ Mesh readObj(std::string_view bytes, std::string_view name, bool flipTexCoords);
 /// vertex_index or vertex_indices; polygons become fans; other elements and properties are skipped.
 Mesh readPly(std::string_view bytes, std::string_view name);
 
+struct SerializedMesh {
+    Mesh mesh;
+    bool faceNormals;  ///< it is meant to be shaded flat
+};
+/// Mitsuba's .serialized, versions 3 and 4: the mesh of this number, counted from 0. Colours are skipped.
+SerializedMesh readSerialized(std::string_view bytes, std::string_view name, int index);
+
 /// Stanford PLY 1.0, binary little endian: x y z, and nx ny nz and u v where the mesh has them. readPly gives the same
 /// mesh back, bit for bit.
 std::string plyBytes(const Mesh& mesh);

@@ -25,6 +25,7 @@ public:
     ReconstructionFilter filter;
     Features features;
     std::vector<std::string> warnings;  ///< e.g. counted degenerate triangles
+    std::vector<std::string> substitutions;  ///< what is not as its file says, in words: images of it are biased
     std::string hash;                   ///< SHA-256 of everything that determines images of this scene
 
     /// Call once after the arrays are filled: areas, bounds, light selection, acceleration structure.

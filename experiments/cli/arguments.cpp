@@ -29,14 +29,14 @@ void openPlugin(const std::string& file) {
         fail(ExitCode::InvalidConfig, "cannot open the plug-in {}: {}", file, ::dlerror());
 }
 
+bool looksLikeFile(const std::string& argument) { return argument.find('/') != argument.npos || fs::path(argument).extension() == ".json"; }
+
 /// A file, inline JSON, or a name that becomes {"type": name}; `noName` fails for a word that is neither.
 template <class Interface>
-ArgumentDocument documentArgument(const std::string& argument, const std::vector<std::string>& extensions) {
+ArgumentDocument documentArgument(const std::string& argument) {
     if (argument.starts_with("{")) return {JsonDocument::fromText(argument, "command line"), fs::current_path()};
     const fs::path path = argument;
-    const bool looksLikeFile = argument.find('/') != argument.npos ||
-                               std::find(extensions.begin(), extensions.end(), path.extension()) != extensions.end();
-    if (looksLikeFile) return {JsonDocument::fromFile(path), path.parent_path()};
+    if (looksLikeFile(argument)) return {JsonDocument::fromFile(path), path.parent_path()};
     std::vector<std::string> names;
     for (const auto* entry : Registry<Interface>::instance().entries()) names.push_back(entry->name);
     if (std::find(names.begin(), names.end(), argument) == names.end())
@@ -46,12 +46,32 @@ ArgumentDocument documentArgument(const std::string& argument, const std::vector
 
 }  // namespace
 
-ArgumentDocument sceneArgument(const std::string& argument) {
-    return documentArgument<Generator>(argument, {".json"});
+ArgumentDocument sceneArgument(const std::string& argument, const XmlOptions& options) {
+    const fs::path path = argument;
+    if (!argument.starts_with("{") && (looksLikeFile(argument) || path.extension() == ".xml"))
+        return {readSceneDocument(path, options), path.parent_path()};
+    if (!options.definitions.empty() || options.lenient) fail(ExitCode::Usage, "-D and --lenient are for scenes in Mitsuba's XML");
+    return documentArgument<Generator>(argument);
+}
+
+std::shared_ptr<XmlOptions> addXmlOptions(CLI::App& command) {
+    auto options = std::make_shared<XmlOptions>();
+    const auto parse = [options](const std::vector<std::string>& assignments) {
+        for (const std::string& assignment : assignments) {
+            const auto [name, value] = splitAssignment(assignment);
+            options->definitions[name] = value;
+        }
+    };
+    command.add_option_function<std::vector<std::string>>("-D", parse, "what $NAME stands for in a scene in Mitsuba's XML (repeatable)")
+        ->type_name("NAME=VALUE")
+        ->take_all()
+        ->allow_extra_args(false);
+    command.add_flag("--lenient", options->lenient, "replace unknown plugins in Mitsuba's XML: magenta BSDFs and textures, others left out; results say so");
+    return options;
 }
 
 ArgumentDocument samplerArgument(const std::string& argument) {
-    return documentArgument<Sampler>(argument, {".json"});
+    return documentArgument<Sampler>(argument);
 }
 
 void addPluginOption(CLI::App& command) {

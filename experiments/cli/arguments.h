@@ -17,8 +17,10 @@ struct ArgumentDocument {
     std::filesystem::path folder;
 };
 
-/// SCENE: a JSON file, a generator's name, or JSON itself.
-ArgumentDocument sceneArgument(const std::string& argument);
+/// SCENE: a JSON or XML file, a generator's name, or JSON itself.
+ArgumentDocument sceneArgument(const std::string& argument, const XmlOptions& options = {});
+/// `-D NAME=VALUE`, repeatable, and `--lenient`.
+std::shared_ptr<XmlOptions> addXmlOptions(CLI::App& command);
 /// A sampler's name, a JSON file with its parameters, or JSON itself.
 ArgumentDocument samplerArgument(const std::string& argument);
 

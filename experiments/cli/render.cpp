@@ -20,6 +20,7 @@ struct RenderArguments {
     std::optional<double> seconds, spp, mutations, rays;
     std::shared_ptr<std::uint64_t> seed;
     std::shared_ptr<int> threads;
+    std::shared_ptr<XmlOptions> xml;
     bool quiet = false;
 };
 
@@ -75,7 +76,7 @@ void renderImage(const RenderArguments& a) {
     checkWritable(a.output);
     if (!a.stats.empty()) checkWritable(a.stats);
 
-    auto [sceneDocument, sceneFolder] = sceneArgument(a.scene);
+    auto [sceneDocument, sceneFolder] = sceneArgument(a.scene, *a.xml);
     auto [samplerDocument, samplerFolder] = samplerArgument(a.sampler);
     JsonDocument film = emptyFilm();
     applyAssignments(a.assignments, sceneDocument, samplerDocument, film);
@@ -124,7 +125,8 @@ void renderImage(const RenderArguments& a) {
 void addRenderCommand(CLI::App& app) {
     auto a = std::make_shared<RenderArguments>();
     CLI::App& command = *app.add_subcommand("render", "render one image");
-    command.add_option("scene", a->scene, "JSON file, generator (see: ulam list generators), or JSON")->required();
+    command.add_option("scene", a->scene, "JSON or XML file, generator (see: ulam list generators), or JSON")->required();
+    a->xml = addXmlOptions(command);
     command.add_option("--sampler", a->sampler, "name (see: ulam list samplers), JSON file, or JSON")->required();
     command
         .add_option("--set", a->assignments, "sampler.KEY=VALUE, scene.KEY=VALUE or scene.film.KEY=VALUE (repeatable)")

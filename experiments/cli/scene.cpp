@@ -16,6 +16,7 @@ struct SceneArguments {
     std::string scene;
     std::vector<std::string> assignments, target;
     bool info = false, json = false;
+    std::shared_ptr<XmlOptions> xml;
 };
 
 void exportScene(const SceneDescription& description, const std::string& format, const std::string& folder) {
@@ -64,7 +65,7 @@ void printScene(const SceneDescription& description, const SceneArguments& a) {
 void runScene(const SceneArguments& a) {
     if (a.info == !a.target.empty())
         fail(ExitCode::Usage, "expected ulam scene SCENE --info, or ulam scene SCENE --export mitsuba3 DIR");
-    auto [document, folder] = sceneArgument(a.scene);
+    auto [document, folder] = sceneArgument(a.scene, *a.xml);
     document.applyOverrides(a.assignments);
     const SceneDescription description = SceneDescription::fromNode(document.root(), folder);
     if (a.info)
@@ -78,7 +79,8 @@ void runScene(const SceneArguments& a) {
 void addSceneCommand(CLI::App& app) {
     auto a = std::make_shared<SceneArguments>();
     CLI::App& command = *app.add_subcommand("scene", "what is in a scene; write it for another renderer");
-    command.add_option("scene", a->scene, "JSON file, generator (see: ulam list generators), or JSON")->required();
+    command.add_option("scene", a->scene, "JSON or XML file, generator (see: ulam list generators), or JSON")->required();
+    a->xml = addXmlOptions(command);
     command.add_option("--set", a->assignments, "KEY=VALUE in the scene's dictionary (repeatable)")
         ->type_name("PATH=VALUE")
         ->take_all()

@@ -2,6 +2,7 @@
 // Parameters that BSDFs of one family share, with Mitsuba 3's names and defaults.
 
 #include "core/base/vector.h"
+#include "core/scene/bsdfs/metals.h"
 
 #include <string>
 
@@ -13,7 +14,7 @@ struct MetalParameters {
     Spectrum eta{0, 0, 0}, k{1, 1, 1}, specularReflectance{1, 1, 1};
     template <class V>
     void describe(V& v) {
-        v("material", material, {.help = "none: eta = 0, k = 1, a perfect mirror, unless eta and k are given", .choices = {"none"}});
+        v("material", material, {.help = "a substance, instead of eta and k; none: a perfect mirror, unless they are given", .choices = metalNames()});
         v("eta", eta, {.help = "real part of the index of refraction", .min = 0, .max = 1e3});
         v("k", k, {.help = "imaginary part of the index of refraction", .min = 0, .max = 1e3});
         v("specular_reflectance", specularReflectance, {.help = "factor on the Fresnel reflectance", .min = 0, .max = 1});

@@ -7,7 +7,7 @@ namespace ulam {
 std::vector<JsonNode> entriesOf(const JsonNode& scene) {
     std::vector<JsonNode> result;
     for (const auto& [key, member] : scene.members()) {
-        if (key == "type" || key == "id" || key == "$schema") continue;
+        if (key == "type" || key == "id" || key == "$schema" || key == "$substitutions") continue;
         if (!isPlugin(member)) member.expected("an object with a \"type\"");
         result.push_back(member);
     }

@@ -57,6 +57,16 @@ void checkRoughness(const JsonNode& node) {
         if (given && given->isNumber() && given->number() < 1e-4) given->expected("a roughness from 0.0001 to 1", "a smooth BSDF has none");
 }
 
+/// The optical constants of a named metal.
+void useMetal(MetalParameters& p, const JsonNode& node) {
+    const auto material = node.find("material");
+    if (!material || p.material == "none") return;
+    for (const char* constant : {"eta", "k"})
+        if (const auto given = node.find(constant)) given->fail(fmt::format("a metal is a material, or eta and k, not both; the material is {}", inQuotes(p.material)));
+    p.eta = findMetal(p.material)->eta;
+    p.k = findMetal(p.material)->k;
+}
+
 /// Parameters that do not go together are refused at the BSDF's place.
 template <class B>
 B made(const typename B::Parameters& parameters, const JsonNode& node) {
@@ -85,6 +95,7 @@ Material readPlain(const JsonNode& node, PluginResolver& resolver) {
     }
     list.parse(node, elsewhere);
     checkRoughness(node);
+    if constexpr (std::is_base_of_v<MetalParameters, typename B::Parameters>) useMetal(parameters, node);
     Coating coating{made<B>(parameters, node), {}};
     for (const TexturedParameter& t : textured) {
         int member = 0;

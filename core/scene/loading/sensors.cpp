@@ -85,6 +85,15 @@ const PluginTable<ReconstructionFilter(const JsonNode&)>& filterTable() {
     return plugins;
 }
 
+ReconstructionFilter readFilter(const JsonNode& node, LoadContext& context) {
+    // Samples are drawn from the filter here, so it cannot be negative anywhere.
+    static constexpr std::array kNegative{"catmullrom", "lanczos", "mitchell"};
+    if (std::find(kNegative.begin(), kNegative.end(), pluginName(node)) == kNegative.end()) return filterTable().find(node).read(node);
+    context.warnings.push_back(fmt::format("a gaussian takes the place of the reconstruction filter {}, which is negative in parts, at {}",
+                                           inQuotes(pluginName(node)), node.where()));
+    return ReconstructionFilter(ReconstructionFilter::GaussianParameters{});
+}
+
 /// Options that mean nothing here (file formats and the like) are noted.
 std::vector<std::string> noteUnknownOptions(const JsonNode& film, const ParameterList& known, LoadContext& context) {
     std::vector<std::string> names, keys;
@@ -101,7 +110,8 @@ std::vector<std::string> noteUnknownOptions(const JsonNode& film, const Paramete
 }
 
 void readInto(FilmParameters& parameters, const JsonNode& film, LoadContext& context) {
-    if (isPlugin(film) && pluginName(film) != "hdrfilm") unknownPlugin(film, "film", filmPlugins());
+    if (isPlugin(film) && pluginName(film) != "hdrfilm")
+        context.warnings.push_back(fmt::format("the film {} is taken for an hdrfilm, at {}", inQuotes(pluginName(film)), film.where()));
     ParameterList list;
     parameters.describe(list);
     list.parse(film, noteUnknownOptions(film, list, context));
@@ -161,7 +171,7 @@ FilmSettings readFilm(const JsonNode& sensor, const JsonNode& replacement, LoadC
                  p.cropOffsetY,
                  croppedLength(p.width, p.cropOffsetX, p.cropWidth, "x", last),
                  croppedLength(p.height, p.cropOffsetY, p.cropHeight, "y", last)};
-    film.filter = filterTable().find(p.rfilter).read(p.rfilter);
+    film.filter = readFilter(p.rfilter, context);
     return film;
 }
 

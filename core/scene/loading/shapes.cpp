@@ -64,6 +64,15 @@ struct ObjParameters : FileParameters {
     }
 };
 
+struct SerializedParameters : FileParameters {
+    int shapeIndex = 0;
+    template <class V>
+    void describe(V& v) {
+        FileParameters::describe(v);
+        v("shape_index", shapeIndex, {.help = "which of the file's meshes, counted from 0", .min = 0, .max = 1e9});
+    }
+};
+
 struct MeshParameters {
     JsonNode positions, triangles, normals, texcoords;
     template <class V>
@@ -203,6 +212,14 @@ Shape readPlyShape(const JsonNode& node, LoadContext& context) {
     return placeFromFile(readPly(context.read(filename), filename.string()), p, node, context);
 }
 
+Shape readSerializedShape(const JsonNode& node, LoadContext& context) {
+    auto p = parsePlugin<SerializedParameters>(node);
+    const JsonNode filename = node.at("filename");
+    SerializedMesh read = readSerialized(context.read(filename), filename.string(), p.shapeIndex);
+    p.faceNormals |= read.faceNormals;
+    return placeFromFile(std::move(read.mesh), p, node, context);
+}
+
 std::vector<Vec3f> parsePoints(const JsonNode& node) {
     const std::vector<double> numbers = node.numbers();
     if (numbers.size() % 3 != 0) node.expected("three numbers a vertex");
@@ -250,6 +267,7 @@ const PluginTable<Shape(const JsonNode&, LoadContext&)>& table() {
             {{"ply", "triangle mesh from a Stanford PLY file", parameterInfo<FileParameters>()}, readPlyShape},
             {{"rectangle", "square [-1,1] in x and y at z = 0, normal +z", parameterInfo<PlacementParameters>()},
              readRectangle},
+            {{"serialized", "triangle mesh from a .serialized file of Mitsuba", parameterInfo<SerializedParameters>()}, readSerializedShape},
             {{"sphere", "sphere, normals outwards", parameterInfo<SphereParameters>()}, readSphere},
         });
     return plugins;

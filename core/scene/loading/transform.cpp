@@ -2,13 +2,14 @@
 
 #include <array>
 
+#include "core/base/warp.h"
 #include "core/scene/loading/plugin_table.h"
 
 namespace ulam {
 namespace {
 
 constexpr const char* kForms =
-    "16 numbers (row-major), 4 rows of 4, or a list of translate, rotate, scale and lookat steps";
+    "16 numbers (row-major), 4 rows of 4, or a list of translate, rotate, scale, lookat and matrix steps";
 
 /// From column-vector convention, as users write matrices.
 Matrix4 fromRows(const std::vector<double>& rows) {
@@ -47,19 +48,27 @@ Matrix4 rotate(const JsonNode& step) {
 Matrix4 lookAt(const JsonNode& step) {
     step.allowOnly("parameter of lookat", {"type", "origin", "target", "up"});
     const Vec3d origin = parseVector(step.at("origin")), target = parseVector(step.at("target"));
-    const Vec3d up = parseVector(step.at("up")), direction = (target - origin).normalized();
+    const Vec3d direction = (target - origin).normalized();
+    // Without a direction up any will do; this is Mitsuba 3's.
+    const auto given = step.find("up");
+    const Vec3d up = given ? parseVector(*given) : Vec3d(Frame(Vec3f(direction)).s);
     const Vec3d left = up.normalized().cross(direction);
     if (!(left.length() > 1e-9)) step.fail("lookat needs origin, target and a direction up that is not along the view");
     const Vec3d x = left.normalized();
     return fromAxes(x, direction.cross(x), direction, origin);
 }
 
+Matrix4 matrix(const JsonNode& step) {
+    step.allowOnly("parameter of matrix", {"type", "value"});
+    return fromRows(step.at("value").numbers(16));
+}
+
 struct Step {
     const char* name;
     Matrix4 (*read)(const JsonNode&);
 };
-constexpr std::array<Step, 4> kSteps{
-    {{"translate", translate}, {"rotate", rotate}, {"scale", scale}, {"lookat", lookAt}}};
+constexpr std::array<Step, 5> kSteps{
+    {{"translate", translate}, {"rotate", rotate}, {"scale", scale}, {"lookat", lookAt}, {"matrix", matrix}}};
 
 Matrix4 parseStep(const JsonNode& node) {
     const std::string& name = pluginName(node);

@@ -1,0 +1,74 @@
+#include "core/scene/mitsuba/upgrade.h"
+
+#include <algorithm>
+#include <cctype>
+
+namespace ulam {
+namespace {
+
+bool upper(char c) { return std::isupper(static_cast<unsigned char>(c)) != 0; }
+bool lower(char c) { return std::islower(static_cast<unsigned char>(c)) != 0; }
+
+void rename(Json& plugin, const char* from, const char* to) {
+    if (!plugin.contains(from) || plugin.contains(to)) return;
+    plugin[to] = plugin[from];
+    plugin.erase(from);
+}
+
+/// Texture coordinates were scaled, then moved.
+void upgradeTexture(Json& texture) {
+    const auto take = [&](const char* name, double otherwise) {
+        const double value = texture.contains(name) && texture[name].is_number() ? texture[name].get<double>() : otherwise;
+        texture.erase(name);
+        return value;
+    };
+    const double uScale = take("uscale", 1), vScale = take("vscale", 1), u = take("uoffset", 0), v = take("voffset", 0);
+    if (uScale == 1 && vScale == 1 && u == 0 && v == 0) return;
+    texture["to_uv"] = {{{"type", "scale"}, {"value", {uScale, vScale, 1}}}, {{"type", "translate"}, {"value", {u, v, 0}}}};
+}
+
+void upgradeBitmap(Json& bitmap) {
+    for (const char* name : {"cache", "max_anisotropy"}) bitmap.erase(name);
+    for (const char* smooth : {"ewa", "trilinear"})
+        if (bitmap.value("filter_type", "") == smooth) bitmap["filter_type"] = "bilinear";
+    // A gamma of 1 takes the numbers as they are; a negative one, the default, what the format says.
+    if (bitmap.contains("gamma") && bitmap["gamma"].is_number()) {
+        const double gamma = bitmap["gamma"].get<double>();
+        if (gamma == 1) bitmap["raw"] = true;
+        if (gamma == 1 || gamma <= 0) bitmap.erase("gamma");
+    }
+    if (bitmap.contains("wrap_mode_u") && bitmap.value("wrap_mode_u", "") == bitmap.value("wrap_mode_v", "")) {
+        bitmap["wrap_mode"] = bitmap["wrap_mode_u"];
+        bitmap.erase("wrap_mode_u");
+        bitmap.erase("wrap_mode_v");
+    }
+}
+
+void upgradeConductor(Json& bsdf) {
+    if (!bsdf.contains("material") && !bsdf.contains("eta") && !bsdf.contains("k")) bsdf["material"] = "Cu";
+    if (bsdf.contains("ext_eta") && (bsdf["ext_eta"] == "air" || bsdf["ext_eta"] == 1)) bsdf.erase("ext_eta");
+}
+
+}  // namespace
+
+std::string underscored(std::string_view camelCase) {
+    std::string result;
+    for (size_t i = 0; i < camelCase.size(); ++i) {
+        const char c = camelCase[i];
+        if (upper(c) && i > 0 && lower(camelCase[i - 1])) result += '_';
+        result += char(upper(c) ? std::tolower(c) : c);
+    }
+    return result;
+}
+
+void upgradePlugin(Json& plugin, std::string_view tag, const MitsubaVersion& version) {
+    if (!version.camelCase()) return;
+    const std::string type = plugin.value("type", "");
+    if (tag == "texture") upgradeTexture(plugin);
+    if (type == "bitmap") upgradeBitmap(plugin);
+    if (type == "diffuse") rename(plugin, "diffuse_reflectance", "reflectance");
+    if (type == "bump" && version.major == 0 && version.minor < 5) plugin["type"] = "bumpmap";
+    if (type == "conductor" || type == "roughconductor") upgradeConductor(plugin);
+}
+
+}  // namespace ulam
