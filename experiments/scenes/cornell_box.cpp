@@ -1,8 +1,8 @@
 // Cornell box: the measured room of the Cornell University Program of Computer Graphics (Goral et al. 1984; data of
-// 1998), in millimetres, 552.8 × 548.8 × 559.2, with its blocks or with glass and mirror in their place.
+// 1998), in millimetres, 552.8 × 548.8 × 559.2, with its blocks, diffuse or glossy, or with glass and mirror in their place.
 
 #include "core/scene/generator.h"
-#include "experiments/scenes/mesh_builder.h"
+#include "experiments/scenes/parts.h"
 
 namespace ulam {
 namespace {
@@ -10,10 +10,6 @@ namespace {
 const Spectrum kWhite{0.725, 0.71, 0.68}, kRed{0.63, 0.065, 0.05}, kGreen{0.14, 0.45, 0.091};
 constexpr double kHeight = 548.8;
 constexpr double kLightY = 548.3;  // just below the ceiling
-
-Json diffuseOf(const Spectrum& c) {
-    return {{"type", "diffuse"}, {"reflectance", {c.x, c.y, c.z}}};
-}
 
 /// A block that stands on the floor; corners of its base in the order of the measurements (clockwise from above).
 Json block(const std::array<std::pair<double, double>, 4>& base, double height, const Json& bsdf) {
@@ -24,44 +20,33 @@ Json block(const std::array<std::pair<double, double>, 4>& base, double height, 
     return mesh.shape(bsdf);
 }
 
-Json sphere(double x, double z, double radius, const Json& bsdf) {
-    return {{"type", "sphere"}, {"center", {x, radius, z}}, {"radius", radius}, {"bsdf", bsdf}};
-}
-
 class CornellBox : public Generator {
 public:
     struct Parameters {
         std::string variant = "plain";
+        double alpha = 0.05;
         Spectrum radiance{51, 36, 12};  // the image's mean is near 0.5
         template <class V>
         void describe(V& v) {
             v("variant", variant,
               {.help = "plain: two white blocks; glass_and_mirror: a glass sphere for the short block, the tall one a "
-                       "mirror; glass_sphere: nothing but one glass sphere",
-               .choices = {"plain", "glass_and_mirror", "glass_sphere"}});
+                       "mirror; glass_sphere: nothing but one glass sphere; glossy: the tall block of rough metal, the short one "
+                       "of rough plastic",
+               .choices = {"plain", "glass_and_mirror", "glass_sphere", "glossy"}});
+            v("alpha", alpha, {.help = "roughness of the glossy blocks", .min = 0.005, .max = 0.3});
             v("radiance", radiance, {.help = "of the lamp", .unit = "W/(m² sr)", .min = 0});
         }
     };
     explicit CornellBox(const Parameters& parameters) : p_(parameters) {}
 
     Json expand() const override {
-        Json scene = {{"type", "scene"}, {"sensor", sensor()}};
+        Json scene = {{"type", "scene"}, {"sensor", View{{278, 273, -800}, {278, 273, -799}, {0, 1, 0}, 39.3077}.sensor()}};
         addRoom(scene);
         addContent(scene);
         return scene;
     }
 
 private:
-    static Json sensor() {
-        return {{"type", "perspective"},
-                {"fov", 39.3077},
-                {"to_world", Json::array({{{"type", "lookat"},
-                                           {"origin", {278, 273, -800}},
-                                           {"target", {278, 273, -799}},
-                                           {"up", {0, 1, 0}}}})},
-                {"film", {{"type", "hdrfilm"}, {"width", 256}, {"height", 256}, {"rfilter", {{"type", "box"}}}}}};
-    }
-
     void addRoom(Json& scene) const {
         MeshBuilder white, red, green, light;
         white.quad({552.8, 0, 0}, {0, 0, 0}, {0, 0, 559.2}, {549.6, 0, 559.2});
@@ -70,11 +55,10 @@ private:
         green.quad({0, 0, 559.2}, {0, 0, 0}, {0, kHeight, 0}, {0, kHeight, 559.2});
         red.quad({552.8, 0, 0}, {549.6, 0, 559.2}, {556, kHeight, 559.2}, {556, kHeight, 0});
         light.quad({343, kLightY, 227}, {343, kLightY, 332}, {213, kLightY, 332}, {213, kLightY, 227});
-        scene["room"] = white.shape(diffuseOf(kWhite));
-        scene["red_wall"] = red.shape(diffuseOf(kRed));
-        scene["green_wall"] = green.shape(diffuseOf(kGreen));
-        scene["light"] = light.shape(diffuse(0));
-        scene["light"]["emitter"] = {{"type", "area"}, {"radiance", {p_.radiance.x, p_.radiance.y, p_.radiance.z}}};
+        scene["room"] = white.shape(diffuse(kWhite));
+        scene["red_wall"] = red.shape(diffuse(kRed));
+        scene["green_wall"] = green.shape(diffuse(kGreen));
+        scene["light"] = emitting(light.shape({}), p_.radiance);
     }
 
     void addContent(Json& scene) const {
@@ -82,12 +66,17 @@ private:
         constexpr std::array<std::pair<double, double>, 4> kTall{{{423, 247}, {265, 296}, {314, 456}, {472, 406}}};
         const Json glass = {{"type", "dielectric"}};
         if (p_.variant == "glass_sphere") {
-            scene["sphere"] = sphere(278, 279.6, 120, glass);
+            scene["sphere"] = sphere({278, 120, 279.6}, 120, glass);
             return;
         }
-        const bool plain = p_.variant == "plain";
-        scene["tall"] = block(kTall, 330, plain ? diffuseOf(kWhite) : Json{{"type", "conductor"}});
-        scene["short"] = plain ? block(kShort, 165, diffuseOf(kWhite)) : sphere(185.5, 169, 82.5, glass);
+        Json tall = diffuse(kWhite), low = diffuse(kWhite);
+        if (p_.variant == "glossy") {
+            tall = metal(kAluminium, p_.alpha);
+            low = {{"type", "roughplastic"}, {"alpha", p_.alpha}, {"diffuse_reflectance", triple(kWhite)}};
+        }
+        if (p_.variant == "glass_and_mirror") tall = {{"type", "conductor"}};
+        scene["tall"] = block(kTall, 330, tall);
+        scene["short"] = p_.variant == "glass_and_mirror" ? sphere({185.5, 82.5, 169}, 82.5, glass) : block(kShort, 165, low);
     }
 
     Parameters p_;

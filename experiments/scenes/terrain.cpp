@@ -2,7 +2,7 @@
 
 #include "core/base/random.h"
 #include "core/scene/generator.h"
-#include "experiments/scenes/mesh_builder.h"
+#include "experiments/scenes/parts.h"
 
 namespace ulam {
 namespace {
@@ -38,12 +38,8 @@ public:
         room.quad({1, kBottom, -1}, {1, kBottom, 1}, {1, 2, 1}, {1, 2, -1});
         lamp.quad({-0.3, 1.99, -0.3}, {0.3, 1.99, -0.3}, {0.3, 1.99, 0.3}, {-0.3, 1.99, 0.3});
         Json scene = {{"type", "scene"},
-                      {"sensor",
-                       {{"type", "perspective"},
-                        {"fov", 60},
-                        {"to_world", Json::array({{{"type", "lookat"}, {"origin", {0, 1.2, 0.95}}, {"target", {0, 0.1, -0.3}}, {"up", {0, 1, 0}}}})},
-                        {"film", {{"type", "hdrfilm"}, {"width", 256}, {"height", 256}, {"rfilter", {{"type", "box"}}}}}}}};
-        scene["terrain"] = landscape();
+                      {"sensor", View{{0, 1.2, 0.95}, {0, 0.1, -0.3}, {0, 1, 0}, 60}.sensor()}};
+        scene["terrain"] = heightField(p_.cells, 1, [&](double x, double z) { return height(x, z); }, diffuse(0.5));
         scene["room"] = room.shape(diffuse(0.7));
         scene["lamp"] = emitting(lamp.shape({}), 20);
         return scene;
@@ -61,24 +57,6 @@ private:
         double sum = 0;
         for (const Wave& w : waves_) sum += w.amplitude * std::sin(w.x * x + w.z * z + w.phase);
         return p_.relief * sum;
-    }
-
-    /// Neighbouring squares share their corners.
-    Json landscape() const {
-        std::vector<double> positions;
-        std::vector<size_t> triangles;
-        const auto n = size_t(p_.cells);
-        for (size_t i = 0; i <= n; ++i)
-            for (size_t j = 0; j <= n; ++j) {
-                const double x = 2.0 * double(i) / double(n) - 1, z = 2.0 * double(j) / double(n) - 1;
-                positions.insert(positions.end(), {x, height(x, z), z});
-            }
-        for (size_t i = 0; i < n; ++i)
-            for (size_t j = 0; j < n; ++j) {
-                const size_t a = i * (n + 1) + j, b = a + n + 1;
-                triangles.insert(triangles.end(), {a, a + 1, b + 1, a, b + 1, b});
-            }
-        return {{"type", "mesh"}, {"positions", positions}, {"triangles", triangles}, {"bsdf", diffuse(0.5)}};
     }
 
     Parameters p_;

@@ -87,7 +87,7 @@ TEST_CASE("parallel_plates: the mean is Howell's form factor, the image agrees w
 }
 
 TEST_CASE("cornell_box: every wall and block faces the room") {
-    for (const char* variant : {"plain", "glass_and_mirror", "glass_sphere"}) {
+    for (const char* variant : {"plain", "glass_and_mirror", "glass_sphere", "glossy"}) {
         const Scene scene = describeGenerator({{"type", "cornell_box"}, {"variant", variant}}).build();
         Random random({41, 42}, 0, 0);
         for (int i = 0; i < 2000; ++i) {
