@@ -207,14 +207,16 @@ Factors factorsOf(const RoughDiffuse& bsdf, Lobe lobe, const Vec3d& l, const Vec
     if (lobe != Lobe::Smooth || l.z <= 0 || c.z <= 0) return {};
     const double thetaL = std::acos(std::min(1.0, l.z / l.length())), thetaC = std::acos(std::min(1.0, c.z / c.length()));
     const double alpha = std::max(thetaL, thetaC), beta = std::min(thetaL, thetaC);
-    const double cosPhi = std::cos(std::atan2(l.y, l.x) - std::atan2(c.y, c.x)), sigma = bsdf.alpha / std::numbers::sqrt2, v = sigma * sigma;
+    const double cosPhi = std::cos(std::atan2(l.y, l.x) - std::atan2(c.y, c.x));
+    const double sigma = bsdf.alpha / std::numbers::sqrt2, v = sigma * sigma;
     double once = 1 - 0.5 * v / (v + 0.33), twice = 0;
     if (bsdf.qualitative) {
         once += 0.45 * v / (v + 0.09) * std::max(0.0, cosPhi) * std::sin(alpha) * std::tan(beta);
     } else {
         const double bend = cosPhi < 0 ? std::pow(2 * beta / kPi, 3) : 0;
         once += cosPhi * 0.45 * v / (v + 0.09) * (std::sin(alpha) - bend) * std::tan(beta);
-        once += (1 - std::abs(cosPhi)) * 0.125 * v / (v + 0.09) * std::pow(4 * alpha * beta / (kPi * kPi), 2) * std::tan((alpha + beta) / 2);
+        once += (1 - std::abs(cosPhi)) * 0.125 * v / (v + 0.09) * std::pow(4 * alpha * beta / (kPi * kPi), 2) *
+                std::tan((alpha + beta) / 2);
         twice = 0.17 * v / (v + 0.13) * (1 - cosPhi * std::pow(2 * beta / kPi, 2));
     }
     Factors out;
@@ -228,7 +230,8 @@ Factors factorsOf(const RoughDiffuse& bsdf, Lobe lobe, const Vec3d& l, const Vec
 }
 
 /// A diffuse base under gloss g, which is sampled with the densities pdfToCamera and pdfToLight.
-Factors glossOverBase(const Spectrum& base, const Spectrum& gloss, double g, double pdfToCamera, double pdfToLight, double cosLight, double cosCamera) {
+Factors glossOverBase(const Spectrum& base, const Spectrum& gloss, double g, double pdfToCamera, double pdfToLight, double cosLight,
+                      double cosCamera) {
     const double a = (gloss.x + gloss.y + gloss.z) / 3, b = (base.x + base.y + base.z) / 3, share = a + b > 0 ? a / (a + b) : 0;
     Factors out;
     for (int i = 0; i < 3; ++i) out[size_t(i)] = gloss[i] * g + base[i] / kPi;
@@ -254,7 +257,8 @@ Factors factorsOf(const Ward& bsdf, Lobe lobe, const Vec3d& l, const Vec3d& c) {
                      : bsdf.variant == Ward::Variant::Ward   ? gauss / (4 * std::sqrt(l.z * c.z))
                                                              : gauss / (4 * l.z * c.z);
     const double perNormal = gauss / std::pow(m.z, 3);
-    return glossOverBase(bsdf.diffuseReflectance, bsdf.specularReflectance, g, perNormal / (4 * c.dot(m)), perNormal / (4 * l.dot(m)), l.z, c.z);
+    return glossOverBase(bsdf.diffuseReflectance, bsdf.specularReflectance, g, perNormal / (4 * c.dot(m)), perNormal / (4 * l.dot(m)),
+                         l.z, c.z);
 }
 
 double schlick(double r0, double cosTheta) { return r0 + (1 - r0) * std::pow(std::clamp(1 - cosTheta, 0.0, 1.0), 5); }
@@ -338,7 +342,8 @@ Factors factorsOf(const Principled& bsdf, Lobe lobe, const Vec3d& l, const Vec3d
     const double coatAlpha2 = std::pow(0.1 * (1 - bsdf.clearcoatGloss) + 0.001 * bsdf.clearcoatGloss, 2);
     const double coatDensity = (coatAlpha2 - 1) / (kPi * std::log(coatAlpha2) * (1 + (coatAlpha2 - 1) * m.z * m.z));
     const Microfacets coatMasking(MicrofacetDistribution::Kind::Ggx, 0.25, 0.25);
-    const double coat = bsdf.clearcoat / 4 * schlick(0.04, cosineForSchlick(half, bsdf.ior)) * coatDensity * coatMasking.g1(l) * coatMasking.g1(c);
+    const double coat = bsdf.clearcoat / 4 * schlick(0.04, cosineForSchlick(half, bsdf.ior)) * coatDensity * coatMasking.g1(l) *
+                        coatMasking.g1(c);
     const double fl = schlick(0, l.z), fc = schlick(0, c.z), r = 2 * bsdf.roughness * half * half;
     const double burley = (1 - fl / 2) * (1 - fc / 2) + r * (fl + fc + fl * fc * (r - 1));
     const double flat = 1.25 * ((1 + fl * (r / 2 - 1)) * (1 + fc * (r / 2 - 1)) * (1 / (l.z + c.z) - 0.5) + 0.5);

@@ -23,10 +23,9 @@ T interfaceReflectance(T cosTheta, double ior, bool exterior) {
 template <class T>
 struct InterfaceFacet {
     bool reflects, scatters;
-    Direction<T> m;     ///< towards the exterior
-    T length;           ///< |n_a a + n_b b|, in units of the exterior's index
-    T cosineA;          ///< |a·m|
-    T cosines;          ///< |a·m| |b·m|
+    Direction<T> m;  ///< towards the exterior
+    T length;        ///< |n_a a + n_b b|, in units of the exterior's index
+    T cosines;       ///< |a·m| |b·m|
     T fresnel;
 
     InterfaceFacet(double ior, const Direction<T>& a, const Direction<T>& b, Lobe lobe)
@@ -41,7 +40,6 @@ struct InterfaceFacet {
         const T cosA = a.dot(m), cosB = b.dot(m);
         scatters = cosA * a.z > 0 && cosB * b.z > 0;
         if (!scatters) return;
-        cosineA = abs(cosA);
         cosines = abs(cosA * cosB);
         if (reflects)
             fresnel = interfaceReflectance(T(0.5) * length, ior, a.z > 0);
@@ -50,16 +48,18 @@ struct InterfaceFacet {
     }
 };
 
-/// The part of a rough refraction that is not Fresnel's, towards the medium of index n (of the exterior: 1).
+/// The part of a rough refraction that is not Fresnel's, towards the medium of index n (of the exterior: 1). Directions are
+/// seen on the upper side, each from its own.
 template <class T>
-T roughRefraction(const MicrofacetDistribution& d, const InterfaceFacet<T>& facet, const Direction<T>& l, const Direction<T>& c, double n) {
-    const T geometry = facet.cosines * d.density(facet.m) / (d.projectedArea(onUpperSide(l)) * d.projectedArea(onUpperSide(c)));
+T roughRefraction(const MicrofacetDistribution& d, const InterfaceFacet<T>& facet, const Direction<T>& l, const Direction<T>& c,
+                  double n) {
+    const T geometry = facet.cosines * d.density(facet.m) / (d.projectedArea(l) * d.projectedArea(c));
     return geometry * (n * n) / (facet.length * facet.length);
 }
 /// Density of a refraction at a visible normal, by dω_m / dω_to.
 template <class T>
 T roughRefractionPdf(const MicrofacetDistribution& d, const InterfaceFacet<T>& facet, const Direction<T>& from, double n) {
-    return facet.cosines * d.density(facet.m) / d.projectedArea(onUpperSide(from)) * (n * n) / (facet.length * facet.length);
+    return facet.cosines * d.density(facet.m) / d.projectedArea(from) * (n * n) / (facet.length * facet.length);
 }
 
 /// w refracted at m, with w·m > 0 and short of total reflection; `relative` is the index on w's side over that beyond.

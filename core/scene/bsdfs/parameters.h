@@ -61,7 +61,8 @@ struct GlossParameters {
     const Spectrum& diffuse(const char* plugin) const {
         const double sum = maxComponent(diffuseReflectance + specularReflectance);
         if (sum > 1 + 1e-9)
-            fail(ExitCode::InvalidConfig, "{}: diffuse_reflectance and specular_reflectance add up to {:g}, but at most 1 is reflected", plugin, sum);
+            fail(ExitCode::InvalidConfig, "{}: diffuse_reflectance and specular_reflectance add up to {:g}, more than 1",
+                 plugin, sum);
         return diffuseReflectance;
     }
 };

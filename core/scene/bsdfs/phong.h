@@ -38,7 +38,8 @@ struct Phong {
     template <class T>
     Color<T> eval(const Direction<T>& toLight, const Direction<T>& toCamera, Lobe lobe) const {
         if (lobe != Lobe::Smooth || !(toLight.z > 0 && toCamera.z > 0)) return Color<T>(T(0));
-        return scaled(diffuseReflectance, T(1 / kPi)) + scaled(specularReflectance, cosinePower(toLight, toCamera) * ((exponent + 2) / (2 * kPi)));
+        const T gloss = cosinePower(toLight, toCamera) * ((exponent + 2) / (2 * kPi));
+        return scaled(diffuseReflectance, T(1 / kPi)) + scaled(specularReflectance, gloss);
     }
 
     template <class T>

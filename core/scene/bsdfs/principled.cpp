@@ -46,7 +46,7 @@ bool Principled::invert(const Vec3f& from, const Vec3f& to, Lobe lobe, Block& u)
         densities = {parts.diffuse * cosineHemispherePdf(t.z), parts.clearcoat * coat.pdf(facet),
                      reflected * roughReflectionPdf(d, onUpperSide(w), facet.m), 0};
     else
-        densities[3] = refracted * roughRefractionPdf(d, facet, w, index(t.z > 0));
+        densities[3] = refracted * roughRefractionPdf(d, facet, onUpperSide(w), index(t.z > 0));
     const auto part = invertPart<4>({parts.diffuse, parts.clearcoat, reflected, refracted}, densities, u[2]);
     if (!part) return false;
     const Sample2 s = *part == 0   ? cosineHemisphereToSquare(to)

@@ -23,7 +23,7 @@ struct Principled {
         double diffuseRate = 1, specularRate = 1, clearcoatRate = 1;
         template <class V>
         void describe(V& v) {
-            v("base_color", baseColor, {.help = "colour of the diffuse part, of metal, and squared of what is refracted", .min = 0, .max = 1});
+            v("base_color", baseColor, {.help = "of the diffuse part and of metal; its root tints glass", .min = 0, .max = 1});
             v("roughness", roughness, {.help = "root of the microfacets' alpha", .min = 0, .max = 1});
             v("anisotropic", anisotropic, {.help = "stretches the highlight along the tangent; 0: isotropic", .min = 0, .max = 1});
             v("metallic", metallic, {.help = "0: dielectric, 1: metal", .min = 0, .max = 1});
@@ -43,14 +43,15 @@ struct Principled {
         /// Interior over exterior. Refraction needs two media, so there an index of 1 becomes 1.001, a specular of 0 0.001.
         double ior() const {
             const bool refracts = specTrans > 0;
-            const double n = specular == 0.5 ? eta : 2 / (1 - std::sqrt(0.08 * (refracts ? std::max(specular, 1e-3) : specular))) - 1;
+            const double s = refracts ? std::max(specular, 1e-3) : specular;
+            const double n = specular == 0.5 ? eta : 2 / (1 - std::sqrt(0.08 * s)) - 1;
             return refracts && n == 1 ? 1.001 : n;
         }
     };
     explicit Principled(const Parameters& p)
-        : baseColor(p.baseColor), roughness(p.roughness), anisotropy(p.anisotropic), metallic(p.metallic), ior(p.ior()), specTint(p.specTint),
-          sheen(p.sheen), sheenTint(p.sheenTint), flatness(p.flatness), clearcoat(p.clearcoat), clearcoatGloss(p.clearcoatGloss),
-          refraction(p.specTrans), transmits(p.specTrans > 0) {}
+        : baseColor(p.baseColor), roughness(p.roughness), anisotropy(p.anisotropic), metallic(p.metallic), ior(p.ior()),
+          specTint(p.specTint), sheen(p.sheen), sheenTint(p.sheenTint), flatness(p.flatness), clearcoat(p.clearcoat),
+          clearcoatGloss(p.clearcoatGloss), refraction(p.specTrans), transmits(p.specTrans > 0) {}
 
     static constexpr bool hasDelta = false, hasSmooth = true, hasNull = false;
     bool anisotropic() const { return anisotropy > 0; }

@@ -61,9 +61,9 @@ Color<T> Principled::diffuse(const Direction<T>& l, const Direction<T>& c, T cos
         const T grazing = retro * 0.5 - T(1), flat = (T(1) + fl * grazing) * (T(1) + fc * grazing);
         f = f * (1 - flatness) + (flat * (T(1) / (l.z + c.z) - T(0.5)) + T(0.5)) * (1.25 * flatness);
     }
-    Color<T> sum = scaled(baseColor, f * (brdf() / kPi));
-    if (sheen > 0) sum = sum + scaled(Spectrum(1 - sheenTint) + tint() * sheenTint, fifthPower(cosine) * (sheen * (1 - metallic)));
-    return sum;
+    const Color<T> sum = scaled(baseColor, f * (brdf() / kPi));
+    if (!(sheen > 0)) return sum;
+    return sum + scaled(Spectrum(1 - sheenTint) + tint() * sheenTint, fifthPower(cosine) * (sheen * (1 - metallic)));
 }
 
 /// GTR1 microfacets with GGX's masking of alpha 1/4 (Burley 2012, §5.4 and appendix B).
@@ -86,7 +86,8 @@ struct Principled::Clearcoat {
         return density(facet.m) * facet.m.z * 0.5 / facet.length;
     }
     Vec3d sample(double u, double v) const {
-        const double s2 = std::min(1.0, alpha2 * std::expm1(-u * std::log(alpha2)) / (1 - alpha2)), s = std::sqrt(s2), phi = 2 * kPi * v;
+        const double s2 = std::min(1.0, alpha2 * std::expm1(-u * std::log(alpha2)) / (1 - alpha2));
+        const double s = std::sqrt(s2), phi = 2 * kPi * v;
         return {s * std::cos(phi), s * std::sin(phi), std::sqrt(1 - s2)};
     }
     Sample2 invert(const Vec3d& m) const {
@@ -121,20 +122,21 @@ Color<T> Principled::eval(const Direction<T>& toLight, const Direction<T>& toCam
     const bool exterior = toLight.z > 0;
     if (!facet.scatters || (!transmits && !(exterior && toCamera.z > 0))) return Color<T>(T(0));
     const auto d = microfacets();
+    const Direction<T> l = onUpperSide(toLight), c = onUpperSide(toCamera);
     if (!facet.reflects) {
         const Spectrum root(std::sqrt(baseColor.x), std::sqrt(baseColor.y), std::sqrt(baseColor.z));
-        return scaled(root * bsdf(), (T(1) - facet.fresnel) * roughRefraction(d, facet, toLight, toCamera, index(toCamera.z > 0)));
+        return scaled(root * bsdf(), (T(1) - facet.fresnel) * roughRefraction(d, facet, l, c, index(toCamera.z > 0)));
     }
-    const T facets = roughReflection(d, onUpperSide(toLight), onUpperSide(toCamera), facet.m);
+    const T facets = roughReflection(d, l, c, facet.m);
     if (!exterior) return Color<T>(facet.fresnel * facets * bsdf());
     const T cosine = T(0.5) * facet.length;
     Color<T> f = reflectance(cosine) * facets;
     if (clearcoat > 0) {
         const Clearcoat coat(*this);
         const T fresnel = T(0.04) + schlickWeight(cosine) * 0.96;
-        f = f + Color<T>(fresnel * coat.density(facet.m) * coat.masking(toLight) * coat.masking(toCamera) * (0.25 * clearcoat));
+        f = f + Color<T>(fresnel * coat.density(facet.m) * coat.masking(l) * coat.masking(c) * (0.25 * clearcoat));
     }
-    if (brdf() > 0) f = f + diffuse(toLight, toCamera, cosine);
+    if (brdf() > 0) f = f + diffuse(l, c, cosine);
     return f;
 }
 
@@ -144,10 +146,11 @@ T Principled::pdf(const Direction<T>& from, const Direction<T>& to, Lobe lobe) c
     const bool exterior = from.z > 0;
     if (!facet.scatters || (!transmits && !(exterior && to.z > 0))) return T(0);
     const auto d = microfacets();
+    const Direction<T> w = onUpperSide(from);
     const Parts<T> parts(*this, from);
     const T refracted = (T(1) - facet.fresnel) * refractedPart(exterior);
-    if (!facet.reflects) return parts.facets * refracted * roughRefractionPdf(d, facet, from, index(to.z > 0));
-    const T facets = parts.facets * (T(1) - refracted) * roughReflectionPdf(d, onUpperSide(from), facet.m);
+    if (!facet.reflects) return parts.facets * refracted * roughRefractionPdf(d, facet, w, index(to.z > 0));
+    const T facets = parts.facets * (T(1) - refracted) * roughReflectionPdf(d, w, facet.m);
     if (!exterior) return facets;
     return facets + parts.clearcoat * Clearcoat(*this).pdf(facet) + parts.diffuse * cosineHemispherePdf(to.z);
 }

@@ -53,9 +53,9 @@ struct RoughDielectric {
         const InterfaceFacet<T> facet(ior, toLight, toCamera, lobe);
         if (!facet.scatters) return Color<T>(T(0));
         const auto d = distribution();
-        if (facet.reflects)
-            return scaled(specularReflectance, facet.fresnel * roughReflection(d, onUpperSide(toLight), onUpperSide(toCamera), facet.m));
-        return scaled(specularTransmittance, (T(1) - facet.fresnel) * roughRefraction(d, facet, toLight, toCamera, index(toCamera.z > 0)));
+        const Direction<T> l = onUpperSide(toLight), c = onUpperSide(toCamera);
+        if (facet.reflects) return scaled(specularReflectance, facet.fresnel * roughReflection(d, l, c, facet.m));
+        return scaled(specularTransmittance, (T(1) - facet.fresnel) * roughRefraction(d, facet, l, c, index(toCamera.z > 0)));
     }
 
     template <class T>
@@ -63,8 +63,9 @@ struct RoughDielectric {
         const InterfaceFacet<T> facet(ior, from, to, lobe);
         if (!facet.scatters) return T(0);
         const auto d = distribution();
-        if (facet.reflects) return facet.fresnel * roughReflectionPdf(d, onUpperSide(from), facet.m);
-        return (T(1) - facet.fresnel) * roughRefractionPdf(d, facet, from, index(to.z > 0));
+        const Direction<T> w = onUpperSide(from);
+        if (facet.reflects) return facet.fresnel * roughReflectionPdf(d, w, facet.m);
+        return (T(1) - facet.fresnel) * roughRefractionPdf(d, facet, w, index(to.z > 0));
     }
 
     template <class T>

@@ -48,7 +48,8 @@ std::optional<Json> nearestInMitsuba3(const JsonNode& node) {
         return glossyPrincipled(node, alpha, alpha);
     }
     if (type == "ward") {
-        const double alpha = number(node, "alpha", Ward::Parameters().alpha), u = number(node, "alpha_u", 0), v = number(node, "alpha_v", 0);
+        const double alpha = number(node, "alpha", Ward::Parameters().alpha);
+        const double u = number(node, "alpha_u", 0), v = number(node, "alpha_v", 0);
         return glossyPrincipled(node, u > 0 ? u : alpha, v > 0 ? v : alpha);
     }
     return std::nullopt;

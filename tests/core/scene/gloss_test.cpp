@@ -148,8 +148,8 @@ TEST_CASE("gloss and base that reflect more than everything are refused") {
 }
 
 TEST_CASE("principled: values that Mitsuba 3.9 gives") {
-    const Vec3d a = Vec3d(0.5, 0.2, 0.8).normalized(), b = Vec3d(-0.3, 0.4, 0.6).normalized(), grazing = Vec3d(0.9, 0.1, 0.15).normalized(),
-                below = Vec3d(-0.4, -0.2, -0.7).normalized(), beside = Vec3d(0.1, 0.3, -0.9).normalized();
+    const Vec3d a = Vec3d(0.5, 0.2, 0.8).normalized(), b = Vec3d(-0.3, 0.4, 0.6).normalized();
+    const Vec3d grazing = Vec3d(0.9, 0.1, 0.15).normalized(), below = Vec3d(-0.4, -0.2, -0.7).normalized(), beside = Vec3d(0.1, 0.3, -0.9).normalized();
     const auto check = [](const Principled& bsdf, const Vec3d& toLight, const Vec3d& toCamera, const Spectrum& expected) {
         const Spectrum f = bsdf.eval(toLight, toCamera, Lobe::Smooth);
         INFO(expected.x << ", got " << f.x);
