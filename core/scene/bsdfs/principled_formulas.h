@@ -66,7 +66,7 @@ Color<T> Principled::diffuse(const Direction<T>& l, const Direction<T>& c, T cos
     return sum + scaled(Spectrum(1 - sheenTint) + tint() * sheenTint, fifthPower(cosine) * (sheen * (1 - metallic)));
 }
 
-/// GTR1 microfacets with GGX's masking of alpha 1/4 (Burley 2012, §5.4 and appendix B).
+/// GTR1 microfacets with GGX's masking of alpha 1/4, as Burley 2012 has them.
 struct Principled::Clearcoat {
     double alpha2;
 
