@@ -37,6 +37,9 @@ inline Dual log(Dual a) {
 inline Dual erf(Dual a) {
     return {std::erf(a.v), a.d * 2 * std::numbers::inv_sqrtpi * std::exp(-a.v * a.v)};
 }
+inline Dual atan2(Dual y, Dual x) {
+    return {std::atan2(y.v, x.v), (x.v * y.d - y.v * x.d) / (x.v * x.v + y.v * y.v)};
+}
 inline Dual abs(Dual a) {
     return a.v < 0 ? -a : a;
 }

@@ -5,30 +5,8 @@
 
 namespace ulam {
 
-struct Diffuse {
-    struct Parameters {
-        Spectrum reflectance{0.5, 0.5, 0.5};
-        template <class V>
-        void describe(V& v) {
-            v("reflectance", reflectance, {.help = "fraction of the light that is reflected", .min = 0, .max = 1});
-        }
-    };
-    explicit Diffuse(const Parameters& p) : reflectance(p.reflectance) {}
-
-    static constexpr bool hasDelta = false, hasSmooth = true, hasNull = false, transmits = false;
-    template <class V>
-    static void textured(V& v) {
-        v("reflectance", &Diffuse::reflectance);
-    }
-
-    double albedo() const { return maxComponent(reflectance); }
-
-    template <class T>
-    Color<T> eval(const Direction<T>& toLight, const Direction<T>& toCamera, Lobe) const {
-        if (!(toLight.z > 0 && toCamera.z > 0)) return Color<T>(T(0));
-        return Color<T>(T(reflectance.x), T(reflectance.y), T(reflectance.z)) * T(1 / kPi);
-    }
-
+/// Directions with density cosθ/π on the side of the shading normal.
+struct CosineSampling {
     template <class T>
     T pdf(const Direction<T>& from, const Direction<T>& to, Lobe) const {
         return from.z > 0 ? cosineHemispherePdf(to.z) : T(0);
@@ -51,6 +29,31 @@ struct Diffuse {
         u[0] = s.u;
         u[1] = s.v;
         return true;
+    }
+};
+
+struct Diffuse : CosineSampling {
+    struct Parameters {
+        Spectrum reflectance{0.5, 0.5, 0.5};
+        template <class V>
+        void describe(V& v) {
+            v("reflectance", reflectance, {.help = "fraction of the light that is reflected", .min = 0, .max = 1});
+        }
+    };
+    explicit Diffuse(const Parameters& p) : reflectance(p.reflectance) {}
+
+    static constexpr bool hasDelta = false, hasSmooth = true, hasNull = false, transmits = false;
+    template <class V>
+    static void textured(V& v) {
+        v("reflectance", &Diffuse::reflectance);
+    }
+
+    double albedo() const { return maxComponent(reflectance); }
+
+    template <class T>
+    Color<T> eval(const Direction<T>& toLight, const Direction<T>& toCamera, Lobe) const {
+        if (!(toLight.z > 0 && toCamera.z > 0)) return Color<T>(T(0));
+        return Color<T>(T(reflectance.x), T(reflectance.y), T(reflectance.z)) * T(1 / kPi);
     }
 
     Spectrum reflectance;

@@ -1,6 +1,7 @@
 #pragma once
 // Parameters that BSDFs of one family share, with Mitsuba 3's names and defaults.
 
+#include "core/base/error.h"
 #include "core/base/vector.h"
 #include "core/scene/bsdfs/metals.h"
 
@@ -48,5 +49,28 @@ struct CoatParameters {
         v("ext_ior", extIor, {.help = "index of refraction outside; default air", .min = 0.1, .max = 10});
     }
 };
+
+/// phong, ward.
+struct GlossParameters {
+    Spectrum diffuseReflectance{0.5, 0.5, 0.5}, specularReflectance{0.2, 0.2, 0.2};
+    template <class V>
+    void describe(V& v) {
+        v("diffuse_reflectance", diffuseReflectance, {.help = "of the base", .min = 0, .max = 1});
+        v("specular_reflectance", specularReflectance, {.help = "of the gloss; with the base's at most 1", .min = 0, .max = 1});
+    }
+    /// The base's, once the sum is known to conserve energy.
+    const Spectrum& diffuse(const char* plugin) const {
+        const double sum = maxComponent(diffuseReflectance + specularReflectance);
+        if (sum > 1 + 1e-9)
+            fail(ExitCode::InvalidConfig, "{}: diffuse_reflectance and specular_reflectance add up to {:g}, more than 1",
+                 plugin, sum);
+        return diffuseReflectance;
+    }
+};
+/// Probability of sampling the gloss: its part of the albedo.
+inline double glossShare(const Spectrum& diffuse, const Spectrum& specular) {
+    const double gloss = specular.x + specular.y + specular.z, total = gloss + diffuse.x + diffuse.y + diffuse.z;
+    return total > 0 ? gloss / total : 0;
+}
 
 }  // namespace ulam

@@ -7,8 +7,7 @@
 // light to camera is scaled by n_c² on transmission, as in every f here.
 
 #include "core/base/error.h"
-#include "core/scene/bsdfs/fresnel.h"
-#include "core/scene/bsdfs/microfacet.h"
+#include "core/scene/bsdfs/facet.h"
 #include "core/scene/bsdfs/parameters.h"
 
 namespace ulam {
@@ -51,27 +50,22 @@ struct RoughDielectric {
 
     template <class T>
     Color<T> eval(const Direction<T>& toLight, const Direction<T>& toCamera, Lobe lobe) const {
-        const Facet<T> facet(*this, toLight, toCamera, lobe);
+        const InterfaceFacet<T> facet(ior, toLight, toCamera, lobe);
         if (!facet.scatters) return Color<T>(T(0));
         const auto d = distribution();
         const Direction<T> l = onUpperSide(toLight), c = onUpperSide(toCamera);
         if (facet.reflects) return scaled(specularReflectance, facet.fresnel * roughReflection(d, l, c, facet.m));
-        const double n = index(toCamera.z > 0);
-        const T geometry = facet.cosines * d.density(facet.m) / (d.projectedArea(l) * d.projectedArea(c));
-        return scaled(specularTransmittance, (T(1) - facet.fresnel) * geometry * (n * n) / (facet.length * facet.length));
+        return scaled(specularTransmittance, (T(1) - facet.fresnel) * roughRefraction(d, facet, l, c, index(toCamera.z > 0)));
     }
 
     template <class T>
     T pdf(const Direction<T>& from, const Direction<T>& to, Lobe lobe) const {
-        const Facet<T> facet(*this, from, to, lobe);
+        const InterfaceFacet<T> facet(ior, from, to, lobe);
         if (!facet.scatters) return T(0);
         const auto d = distribution();
         const Direction<T> w = onUpperSide(from);
         if (facet.reflects) return facet.fresnel * roughReflectionPdf(d, w, facet.m);
-        // Density of the visible normal by dω_m / dω_to.
-        const double n = index(to.z > 0);
-        const T visible = facet.cosines * d.density(facet.m) / d.projectedArea(w);
-        return (T(1) - facet.fresnel) * visible * (n * n) / (facet.length * facet.length);
+        return (T(1) - facet.fresnel) * roughRefractionPdf(d, facet, w, index(to.z > 0));
     }
 
     template <class T>
@@ -82,10 +76,10 @@ struct RoughDielectric {
     std::optional<ScatterSample> sampleLobe(const Vec3f& from, Lobe lobe, const Block& u) const {
         if (lobe != Lobe::Smooth || from.z == 0) return std::nullopt;
         const Vec3d w = onUpperSide(Vec3d(from)), m = distribution().sampleVisible(w, u[0], u[1]);
-        const double c = w.dot(m), relative = from.z > 0 ? 1 / ior : ior, c2 = 1 - (1 - c * c) * relative * relative;
+        const double c = w.dot(m);
         if (!(c > 0)) return std::nullopt;
-        const bool reflects = u[2] < reflectance(c, from.z > 0);
-        const Vec3d to = reflects ? mirroredAt(w, m) : m * (relative * c - std::sqrt(std::max(0.0, c2))) - w * relative;
+        const bool reflects = u[2] < interfaceReflectance(c, ior, from.z > 0);
+        const Vec3d to = reflects ? mirroredAt(w, m) : refractedAt(w, m, from.z > 0 ? 1 / ior : ior);
         if (reflects != (to.z > 0) || to.z == 0) return std::nullopt;
         return ScatterSample{Vec3f(to * (from.z > 0 ? 1 : -1)).normalized(), Lobe::Smooth};
     }
@@ -93,7 +87,7 @@ struct RoughDielectric {
 
     bool invert(const Vec3f& from, const Vec3f& to, Lobe lobe, Block& u) const {
         const Vec3d w(from);
-        const Facet<double> facet(*this, w, Vec3d(to), lobe);
+        const InterfaceFacet<double> facet(ior, w, Vec3d(to), lobe);
         // A direction is reflected or transmitted, according to its side.
         if (!facet.scatters || (facet.reflects ? facet.fresnel : 1 - facet.fresnel) <= 0) return false;
         const Sample2 s = distribution().invertVisible(onUpperSide(w), facet.m);
@@ -110,48 +104,7 @@ struct RoughDielectric {
 
 private:
     MicrofacetDistribution distribution() const { return {kind, alphaU, alphaV}; }
-    double ratio() const { return std::max(ior, 1 / ior); }
     double index(bool exterior) const { return exterior ? 1 : ior; }
-
-    /// A distribution is symmetric about the origin: below the surface it is seen as from above.
-    template <class T>
-    static Direction<T> onUpperSide(const Direction<T>& w) {
-        return w.z > 0 ? w : -w;
-    }
-
-    template <class T>
-    T reflectance(T cosTheta, bool exterior) const {
-        return fresnelDielectric(cosTheta, ratio(), exterior == (ior > 1));
-    }
-
-    /// The microfacet between two directions.
-    template <class T>
-    struct Facet {
-        bool reflects, scatters;
-        Direction<T> m;
-        T length;   ///< |n_l l + n_c c|, in units of the exterior's index
-        T cosines;  ///< |l·m| |c·m|
-        T fresnel;
-
-        Facet(const RoughDielectric& bsdf, const Direction<T>& l, const Direction<T>& c, Lobe lobe)
-            : reflects(l.z * c.z > 0), scatters(lobe == Lobe::Smooth && !(l.z * c.z == 0)) {
-            using std::abs;
-            if (!scatters) return;
-            const double nLight = reflects ? 1 : bsdf.index(l.z > 0), nCamera = reflects ? 1 : bsdf.index(c.z > 0);
-            const HalfVector<T> h(l * T(nLight) + c * T(nCamera));
-            m = h.m;
-            length = h.length;
-            // Both on their own sides of the microfacet, as of the surface.
-            const T cosL = l.dot(m), cosC = c.dot(m);
-            scatters = cosL * l.z > 0 && cosC * c.z > 0;
-            if (!scatters) return;
-            cosines = abs(cosL * cosC);
-            if (reflects)
-                fresnel = bsdf.reflectance(T(0.5) * length, l.z > 0);
-            else
-                fresnel = fresnelFromThinSide(abs((l.z > 0) == (bsdf.ior > 1) ? cosL : cosC), bsdf.ratio());
-        }
-    };
 };
 
 }  // namespace ulam

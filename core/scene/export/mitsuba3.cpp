@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "core/scene/export/export_folder.h"
+#include "core/scene/export/nearest.h"
 #include "core/scene/loading/context.h"
 #include "core/scene/loading/entries.h"
 #include "core/scene/loading/plugin_table.h"
@@ -167,6 +168,11 @@ pugi::xml_node Exporter::plugin(pugi::xml_node parent, const JsonNode& node) {
         pugi::xml_node reference = parent.append_child("ref");
         reference.append_attribute("id") = ids_.at(node.at("id").string()).c_str();
         return reference;
+    }
+    if (const auto nearest = nearestInMitsuba3(node)) {
+        const JsonNode written(*nearest);
+        leaveOut(node, fmt::format("{}, written as {},", inQuotes(pluginName(node)), inQuotes(pluginName(written))));
+        return plugin(parent, written);
     }
     const TaggedPlugin& known = plugins_.at(pluginName(node));
     pugi::xml_node xml = parent.append_child(known.tag);

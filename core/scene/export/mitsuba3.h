@@ -10,7 +10,8 @@
 namespace ulam {
 
 /// Writes scene.xml, meshes/ and textures/ into a folder, which is made, or replaced where it holds an earlier export
-/// (see ExportFolder). Files that the scene names are copied. Returns a line for everything that was left out.
+/// (see ExportFolder). Files that the scene names are copied. Returns a line for everything that was left out
+/// or written as something else (nearest.h).
 std::vector<std::string> exportMitsuba3(const SceneDescription& description, const std::filesystem::path& folder);
 
 }  // namespace ulam

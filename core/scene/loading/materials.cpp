@@ -67,6 +67,12 @@ void useMetal(MetalParameters& p, const JsonNode& node) {
     p.k = findMetal(p.material)->k;
 }
 
+/// principled says its index of refraction in two ways.
+void checkIndex(const JsonNode& node) {
+    const auto eta = node.find("eta"), specular = node.find("specular");
+    if (eta && specular) specular->fail("an index of refraction is eta or specular, not both");
+}
+
 /// Parameters that do not go together are refused at the BSDF's place.
 template <class B>
 B made(const typename B::Parameters& parameters, const JsonNode& node) {
@@ -96,6 +102,7 @@ Material readPlain(const JsonNode& node, PluginResolver& resolver) {
     list.parse(node, elsewhere);
     checkRoughness(node);
     if constexpr (std::is_base_of_v<MetalParameters, typename B::Parameters>) useMetal(parameters, node);
+    checkIndex(node);
     Coating coating{made<B>(parameters, node), {}};
     for (const TexturedParameter& t : textured) {
         int member = 0;
@@ -164,13 +171,17 @@ const PluginTable<Material(const JsonNode&, PluginResolver&)>& table() {
                     {infoOf<Diffuse>("diffuse", "Lambertian reflection"), readPlain<Diffuse>},
                     {maskInfo(), readMask},
                     {infoOf<Null>("null", "nothing: light goes straight through"), readPlain<Null>},
+                    {infoOf<Phong>("phong", "diffuse base with a cosine lobe"), readPlain<Phong>},
                     {infoOf<Plastic>("plastic", "smooth transparent coat over a diffuse base"), readPlain<Plastic>},
+                    {infoOf<Principled>("principled", "Disney's BSDF, from plastic to metal and glass"), readPlain<Principled>},
                     {infoOf<RoughConductor>("roughconductor", "rough metal"), readPlain<RoughConductor>},
                     {infoOf<RoughDielectric>("roughdielectric", "rough interface of two transparent media"), readPlain<RoughDielectric>},
+                    {infoOf<RoughDiffuse>("roughdiffuse", "Lambertian facets: clay, plaster, sand"), readPlain<RoughDiffuse>},
                     {infoOf<RoughPlastic>("roughplastic", "rough transparent coat over a diffuse base"), readPlain<RoughPlastic>},
                     {infoOf<ThinDielectric>("thindielectric", "pane of glass without thickness"), readPlain<ThinDielectric>},
                     {{"twosided", "one nested BSDF for both sides, or one for the front and one for the back", {}, {}},
                      readTwosided},
+                    {infoOf<Ward>("ward", "diffuse base with anisotropic gloss"), readPlain<Ward>},
                 });
     return plugins;
 }

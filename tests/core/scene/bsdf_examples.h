@@ -5,6 +5,7 @@
 
 #include "core/scene/bsdf.h"
 #include "core/scene/bsdfs/mask.h"
+#include "core/scene/bsdfs/principled_formulas.h"
 
 namespace ulam {
 
@@ -63,6 +64,61 @@ inline RoughPlastic roughPlastic(double ior, double base, const char* distributi
     return RoughPlastic(p);
 }
 
+inline RoughDiffuse roughDiffuse(double reflectance, double alpha, bool qualitative = false) {
+    RoughDiffuse::Parameters p;
+    p.reflectance = Spectrum(reflectance, 0.5 * reflectance, 0.02 * reflectance);
+    p.alpha = alpha, p.useFastApprox = qualitative;
+    return RoughDiffuse(p);
+}
+inline Phong phong(double base, double gloss, double exponent) {
+    Phong::Parameters p;
+    p.diffuseReflectance = Spectrum(base, 0.5 * base, 0.25 * base), p.specularReflectance = Spectrum(gloss, 0.8 * gloss, gloss);
+    p.exponent = exponent;
+    return Phong(p);
+}
+inline Ward ward(const char* variant, double base, double gloss, double alphaU, double alphaV) {
+    Ward::Parameters p;
+    p.variant = variant;
+    p.diffuseReflectance = Spectrum(base, 0.5 * base, 0.25 * base), p.specularReflectance = Spectrum(gloss, 0.8 * gloss, gloss);
+    p.alphaU = alphaU, p.alphaV = alphaV;
+    return Ward(p);
+}
+inline Principled::Parameters principledColour(const Spectrum& color, double roughness) {
+    Principled::Parameters p;
+    p.baseColor = color;
+    p.roughness = roughness;
+    return p;
+}
+/// Every lobe but refraction.
+inline Principled principledCloth() {
+    auto p = principledColour({0.8, 0.4, 0.1}, 0.4);
+    p.anisotropic = 0.7, p.metallic = 0.3, p.specular = 0.8, p.specTint = 0.6, p.sheen = 0.9, p.sheenTint = 0.4;
+    p.flatness = 0.5, p.clearcoat = 0.8, p.clearcoatGloss = 0.2;
+    return Principled(p);
+}
+inline Principled principledMetal(double roughness) {
+    auto p = principledColour({0.8, 0.4, 0.1}, roughness);
+    p.metallic = 1;
+    return Principled(p);
+}
+inline Principled principledGlass(double eta, double refraction, double metallic, double roughness, double anisotropic) {
+    auto p = principledColour({0.8, 0.4, 0.1}, roughness);
+    p.eta = eta, p.specTrans = refraction, p.metallic = metallic, p.anisotropic = anisotropic;
+    return Principled(p);
+}
+/// Lighter inside than outside, with a clearcoat.
+inline Principled principledBubble() {
+    auto p = principledColour({0.8, 0.4, 0.1}, 0.7);
+    p.eta = 0.8, p.specTrans = 0.5, p.clearcoat = 1, p.specTint = 0.5;
+    return Principled(p);
+}
+/// The roughest, and black but for sheen and clearcoat.
+inline Principled principledDust() {
+    auto p = principledColour({0, 0, 0}, 1);
+    p.anisotropic = 1, p.specular = 0, p.flatness = 1, p.sheen = 1, p.clearcoat = 1, p.clearcoatGloss = 0.5;
+    return Principled(p);
+}
+
 inline const std::vector<Bsdf>& bsdfs() {
     static const std::vector<Bsdf> all = {
         diffuse(0.8),
@@ -88,6 +144,26 @@ inline const std::vector<Bsdf>& bsdfs() {
         roughPlastic(1.5, 1, "ggx", 0.2, true),
         roughPlastic(2, 1, "ggx", 0.7),
         Null(Null::Parameters()),
+        roughDiffuse(1, 0.47),
+        roughDiffuse(0.5, 1),
+        roughDiffuse(0.8, 0, true),
+        roughDiffuse(1, 0.3, true),
+        phong(0.5, 0.5, 30),
+        phong(0, 1, 0),
+        phong(0.9, 0.1, 1000),
+        phong(0.5, 0, 5),
+        ward("balanced", 0.4, 0.6, 0.6, 0.4),
+        ward("balanced", 0, 1, 1, 1),
+        ward("ward", 0.5, 0.5, 0.2, 0.2),
+        ward("ward-duer", 0.7, 0.3, 0.2, 0.5),
+        Principled(principledColour({0.8, 0.4, 0.1}, 0.5)),
+        Principled(principledColour({1, 1, 1}, 1)),
+        principledCloth(),
+        principledMetal(0.3),
+        principledGlass(1.4, 0.7, 0.1, 0.6, 0.5),
+        principledGlass(1.5, 1, 0, 0.4, 0),
+        principledBubble(),
+        principledDust(),
     };
     return all;
 }
@@ -100,7 +176,7 @@ inline Vec3f onSphere(Random& random) {
 /// η of the medium on the side of w, in units of the exterior's.
 template <class B>
 double indexBeside(const B& bsdf, const Vec3f& w) {
-    if constexpr (std::is_same_v<B, Dielectric> || std::is_same_v<B, RoughDielectric>)
+    if constexpr (std::is_same_v<B, Dielectric> || std::is_same_v<B, RoughDielectric> || std::is_same_v<B, Principled>)
         return w.z < 0 ? bsdf.ior : 1;
     else
         return 1;

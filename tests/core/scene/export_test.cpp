@@ -148,6 +148,29 @@ TEST_CASE("export: what has no meaning here is named, not dropped") {
     CHECK(e.leftOut[2] == R"("pixel_format" of "hdrfilm" at /sensor/film/pixel_format)");
 }
 
+TEST_CASE("export: what Mitsuba 3 lacks is written as the nearest, and named") {
+    const Exported e(sceneWith(R"(
+        "clay": {"type": "roughdiffuse", "reflectance": 0.3, "alpha": 0.5},
+        "a": {"type": "cube", "bsdf": {"type": "phong", "exponent": 198, "diffuse_reflectance": [0.1, 0.2, 0.3]}},
+        "b": {"type": "cube", "bsdf": {"type": "twosided", "x": {"type": "ward", "alpha_u": 0.4, "alpha_v": 0.1, "specular_reflectance": 0.04}}},
+        "c": {"type": "cube", "bsdf": {"type": "principled", "metallic": 0.25, "eta": 1.25}},
+        "d": {"type": "cube", "bsdf": {"type": "ref", "id": "clay"}}
+    )"));
+    REQUIRE(e.leftOut.size() == 3);
+    CHECK(e.leftOut[0] == R"("roughdiffuse", written as "diffuse", at /clay)");
+    CHECK(e.leftOut[1] == R"("phong", written as "principled", at /a/bsdf)");
+    CHECK(e.leftOut[2] == R"("ward", written as "principled", at /b/bsdf/x)");
+    CHECK(e.value("bsdf[@type='diffuse' and @id='clay']/rgb[@name='reflectance']") == "0.3, 0.3, 0.3");
+    CHECK(e.value("shape[@id='a']/bsdf[@type='principled']/rgb[@name='base_color']") == "0.1, 0.2, 0.3");
+    CHECK(std::stod(e.value("shape[@id='a']/bsdf/float[@name='roughness']")) == Approx(std::sqrt(0.1)));
+    const std::string gloss = "shape[@id='b']/bsdf/bsdf[@type='principled']/float";
+    CHECK(std::stod(e.value(gloss + "[@name='eta']")) == Approx(1.5));
+    CHECK(std::stod(e.value(gloss + "[@name='roughness']")) == Approx(std::sqrt(0.2)));
+    CHECK(std::stod(e.value(gloss + "[@name='anisotropic']")) == Approx(0.75 / 0.9));
+    CHECK(e.value("shape[@id='c']/bsdf[@type='principled']/float[@name='metallic']") == "0.25");
+    CHECK(e.value("shape[@id='c']/bsdf/float[@name='eta']") == "1.25");
+}
+
 TEST_CASE("export: an earlier export is replaced, other people's files are not") {
     const SceneFolder files("export_folder");
     const fs::path folder = files.path / "deep" / "out";

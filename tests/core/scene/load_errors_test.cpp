@@ -191,6 +191,15 @@ TEST_CASE("scenes that cannot be rendered") {
                    "at most one BSDF"));
 }
 
+TEST_CASE("parameters of BSDFs that do not go together") {
+    CHECK(mentions(errorOf(sceneWith(R"("b": {"type": "phong", "diffuse_reflectance": 0.7, "specular_reflectance": [0.1, 0.4, 0.1]})")), "at most 1"));
+    CHECK(mentions(errorOf(sceneWith(R"("b": {"type": "ward", "variant": "duer"})")), "ward-duer"));
+    CHECK(mentions(errorOf(sceneWith(R"("b": {"type": "ward", "alpha_u": 0.2})")), "alpha_v is missing"));
+    CHECK(mentions(errorOf(sceneWith(R"("b": {"type": "principled", "eta": 1.4, "specular": 0.3})")), "/b/specular"));
+    CHECK(mentions(errorOf(sceneWith(R"("b": {"type": "principled", "spec_trans": {"type": "checkerboard"}})")), "/b/spec_trans"));
+    CHECK(mentions(errorOf(sceneWith(R"("t": {"type": "twosided", "b": {"type": "principled", "spec_trans": 0.1}})")), "transmits"));
+}
+
 TEST_CASE("references and two-sided materials that make no sense") {
     CHECK(mentions(errorOf(sceneWith(R"("s": {"type": "cube", "b": {"type": "ref", "id": "light"}})")), "no BSDF"));
     CHECK(mentions(errorOf(sceneWith(R"("r": {"type": "ref", "id": "r"})")), "\"ref\""));

@@ -235,3 +235,34 @@ TEST_CASE("a scene file is found relative to the folder, and its meshes relative
     CHECK(SceneDescription::fromNode(name, folder.path).build().shapes.size() == 1);
     CHECK(SceneDescription::fromFile(folder.path / "inner/scene.json").generator() == nullptr);
 }
+
+TEST_CASE("roughdiffuse, phong, ward and principled: their parameters, with Mitsuba's defaults") {
+    const Scene scene = loadText(sceneWith(R"(
+        "a": {"type": "cube", "bsdf": {"type": "roughdiffuse", "use_fast_approx": true}},
+        "b": {"type": "cube", "bsdf": {"type": "phong"}},
+        "c": {"type": "cube", "bsdf": {"type": "phong", "exponent": {"type": "checkerboard", "color0": 10, "color1": 1000}}},
+        "d": {"type": "cube", "bsdf": {"type": "ward"}},
+        "e": {"type": "cube", "bsdf": {"type": "ward", "variant": "ward", "alpha_u": 0.3, "alpha_v": 0.2}},
+        "f": {"type": "cube", "bsdf": {"type": "twosided", "b": {"type": "principled", "specular": 0}}},
+        "g": {"type": "cube", "bsdf": {"type": "principled", "eta": 1.3, "spec_trans": 1, "main_specular_sampling_rate": 2}}
+    )"));
+    const auto bsdfOf = [&]<class B>(const std::string& id, B*) { return std::get<B>(materialOf(scene, id).front.bsdf); };
+    const auto clay = bsdfOf("a", (RoughDiffuse*)nullptr);
+    CHECK(clay.qualitative);
+    CHECK(clay.alpha == 0.2);
+    CHECK(clay.reflectance == Spectrum(0.5));
+    const auto paint = bsdfOf("b", (Phong*)nullptr);
+    CHECK(paint.exponent == 30);
+    CHECK(paint.diffuseReflectance == Spectrum(0.5));
+    CHECK(paint.specularReflectance == Spectrum(0.2));
+    CHECK(materialOf(scene, "c").front.bindings.size() == 1);
+    CHECK(bsdfOf("d", (Ward*)nullptr).variant == Ward::Variant::Balanced);
+    CHECK(bsdfOf("d", (Ward*)nullptr).alphaV == 0.1);
+    CHECK(bsdfOf("e", (Ward*)nullptr).variant == Ward::Variant::Ward);
+    CHECK(bsdfOf("e", (Ward*)nullptr).alphaU == 0.3);
+    CHECK(bsdfOf("e", (Ward*)nullptr).alphaV == 0.2);
+    CHECK(bsdfOf("f", (Principled*)nullptr).ior == 1);
+    CHECK(bsdfOf("f", (Principled*)nullptr).roughness == 0.5);
+    CHECK(bsdfOf("g", (Principled*)nullptr).ior == 1.3);
+    CHECK(bsdfOf("g", (Principled*)nullptr).transmits);
+}

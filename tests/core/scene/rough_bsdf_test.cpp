@@ -7,7 +7,6 @@ using namespace ulam;
 
 namespace {
 
-
 /// Samples on the sphere against `pdf`. Lobes must be wide against the midpoints of the test's quadrature.
 template <class B>
 std::optional<std::string> directionMisfit(const B& bsdf, const Vec3f& from, uint64_t seed) {
@@ -45,7 +44,9 @@ TEST_CASE("rough BSDFs: samples follow their density from either side") {
     for (const Bsdf& any : {Bsdf(roughConductor(0.2, 3.9, "beckmann", 0.3, 0.3)), Bsdf(roughConductor(0, 1, "ggx", 0.6, 0.15)),
                             Bsdf(roughDielectric(1.5, "beckmann", 0.15, 0.4)), Bsdf(roughDielectric(1.5, "ggx", 0.3, 0.3)),
                             Bsdf(roughDielectric(1 / 1.5, "beckmann", 0.5, 0.5)), Bsdf(roughPlastic(1.5, 0.8, "beckmann", 0.3)),
-                            Bsdf(roughPlastic(2, 1, "ggx", 0.15))})
+                            Bsdf(roughPlastic(2, 1, "ggx", 0.15)), Bsdf(roughDiffuse(0.8, 0.5)), Bsdf(phong(0.4, 0.6, 20)),
+                            Bsdf(phong(0, 1, 0)), Bsdf(ward("balanced", 0.2, 0.8, 0.3, 0.6)), Bsdf(ward("ward", 0.5, 0.5, 0.2, 0.2)),
+                            Bsdf(principledCloth()), Bsdf(principledGlass(1.4, 0.7, 0.1, 0.6, 0.5)), Bsdf(principledDust())})
         dispatch(any, [&](const auto& bsdf) {
             if constexpr (std::decay_t<decltype(bsdf)>::hasSmooth)
                 for (const double z : {0.95, 0.5, 0.15, -0.15, -0.7}) {
@@ -139,8 +140,8 @@ TEST_CASE("random numbers of an inverse have the law of the numbers that made th
             CHECK_FIT(misfit(
                 Domain{0, 1, 0, 1, 20, 40},
                 [&](Random& r) -> std::optional<Sample2> {
-                    const auto s = bsdf.sample(from, r.nextBlock());
-                    if (!s) return std::nullopt;
+                    std::optional<ScatterSample> s;
+                    while (!s) s = bsdf.sample(from, r.nextBlock());
                     Block u = r.nextBlock();
                     REQUIRE(bsdf.invert(from, s->to, s->lobe, u));
                     return Sample2{u[other], u[2]};
@@ -148,7 +149,7 @@ TEST_CASE("random numbers of an inverse have the law of the numbers that made th
                 [](double, double) { return 1; }, seed++, 200'000));
         }
     };
-    // From where no sample is lost.
+    // From where hardly a sample is lost.
     const Vec3f above = directionOf(1, 0.9), below = directionOf(1, -0.95);
     check(roughPlastic(1.5, 0.8, "beckmann", 0.2), above);
     check(roughPlastic(2.4, 0.3, "beckmann", 0.1), above);
@@ -159,6 +160,12 @@ TEST_CASE("random numbers of an inverse have the law of the numbers that made th
     const ThinDielectric pane = thinDielectric(2.4);
     check(Masked(pane, 0.7), above);
     check(Masked(pane, 0.7), below);
+    check(phong(0.5, 0.4, 1000), above);
+    check(ward("balanced", 0.4, 0.6, 0.05, 0.1), above);
+    check(ward("ward-duer", 0.6, 0.2, 0.1, 0.1), above);
+    check(Principled(principledColour({0.3, 0.2, 0.1}, 0.05)), above);
+    check(principledGlass(1.5, 0.6, 0, 0.05, 0.3), above);
+    check(principledGlass(1.5, 0.6, 0, 0.05, 0.3), below);
     const RoughPlastic rough = roughPlastic(1.5, 0.8, "beckmann", 0.2);
     check(Masked(rough, 0.4), above);
 }
@@ -185,6 +192,11 @@ TEST_CASE("textures may replace what the list of each BSDF names") {
     CHECK(namesOf((RoughConductor*)nullptr) ==
           Names{"eta", "k", "specular_reflectance", "alpha", "alpha", "alpha_u", "alpha_v"});
     CHECK(namesOf((Null*)nullptr).empty());
+    CHECK(namesOf((RoughDiffuse*)nullptr) == Names{"reflectance", "alpha"});
+    CHECK(namesOf((Phong*)nullptr) == Names{"diffuse_reflectance", "specular_reflectance", "exponent"});
+    CHECK(namesOf((Ward*)nullptr) == Names{"diffuse_reflectance", "specular_reflectance", "alpha", "alpha", "alpha_u", "alpha_v"});
+    CHECK(namesOf((Principled*)nullptr) == Names{"base_color", "roughness", "anisotropic", "metallic", "spec_tint", "sheen", "sheen_tint",
+                                                 "flatness", "clearcoat", "clearcoat_gloss"});
     // Nothing derived from them is kept: a replaced member gives the BSDF that was made with it.
     RoughConductor changed = roughConductor(0.2, 3.9, "ggx", 0.5, 0.5);
     changed.alphaU = changed.alphaV = 0.2;

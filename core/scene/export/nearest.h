@@ -1,0 +1,17 @@
+#pragma once
+// What stands for a plugin of Ulam that Mitsuba 3 does not have.
+
+#include <optional>
+
+#include "core/config/json.h"
+
+namespace ulam {
+
+/// The dictionary of the nearest plugin of Mitsuba 3; none where it has the plugin itself. Textures of colours stay where the
+/// other plugin can hold them, other textures become their parameter's default.
+///   roughdiffuse  diffuse, without the roughness
+///   phong, ward   principled with the same base, lobe width and reflectance at normal incidence; its gloss is grey and rises
+///                 towards grazing angles
+std::optional<Json> nearestInMitsuba3(const JsonNode& node);
+
+}  // namespace ulam
