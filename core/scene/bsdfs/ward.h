@@ -57,7 +57,8 @@ struct Ward {
     }
 
     double albedo() const {
-        if (variant != Variant::Balanced) return std::numeric_limits<double>::infinity();
+        // Unbounded at grazing angles. Finite, so that nothing is left of it where a mask covers nothing.
+        if (variant != Variant::Balanced) return std::numeric_limits<double>::max();
         return maxComponent(diffuseReflectance + specularReflectance);
     }
 
