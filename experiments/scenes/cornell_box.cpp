@@ -71,7 +71,7 @@ private:
         }
         Json tall = diffuse(kWhite), low = diffuse(kWhite);
         if (p_.variant == "glossy") {
-            tall = metal(kAluminium, p_.alpha);
+            tall = metal("Al", p_.alpha);
             low = {{"type", "roughplastic"}, {"alpha", p_.alpha}, {"diffuse_reflectance", triple(kWhite)}};
         }
         if (p_.variant == "glass_and_mirror") tall = {{"type", "conductor"}};

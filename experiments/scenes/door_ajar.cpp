@@ -119,7 +119,7 @@ private:
             }
         scene["table"] = table.shape(diffuse(kTableWood));
 
-        const std::array<Json, 3> materials{metal(kAluminium, 0.03), diffuse(Spectrum(0.7, 0.25, 0.15)), glass(0.02, 1.5)};
+        const std::array<Json, 3> materials{metal("Al", 0.03), diffuse(Spectrum(0.7, 0.25, 0.15)), glass(0.02, 1.5)};
         const int rows = (p_.objects + kPotsInARow - 1) / kPotsInARow;
         for (int i = 0; i < p_.objects; ++i) {
             const int row = i / kPotsInARow, column = i % kPotsInARow, inRow = std::min(kPotsInARow, p_.objects - row * kPotsInARow);

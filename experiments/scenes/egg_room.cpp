@@ -97,7 +97,7 @@ private:
     }
 
     static void addFloorLamp(Json& scene) {
-        const Json brass = metal(kGold, 0.25);
+        const Json brass = metal("Au", 0.25);
         const Vec3d foot(kLampX, kLampY, kZ0), up(0, 0, 1);
         constexpr int kProfile = 24, kSides = 96;
         std::vector<Imath::V2d> dish, base;

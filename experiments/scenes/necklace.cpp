@@ -34,7 +34,7 @@ public:
         const double w = kFloorHalf;
         floor.quad({-w, 0, w}, {w, 0, w}, {w, 0, -w}, {-w, 0, -w});
         scene["floor"] = floor.shape(diffuse(0.4));
-        scene["metal"] = metal(kGold, p_.alpha);
+        scene["metal"] = metal("Au", p_.alpha);
         const std::vector<Vec3d> feet = places();
         double nearest = 1e9;
         for (size_t i = 0; i < feet.size(); ++i) nearest = std::min(nearest, (feet[i] - feet[(i + 1) % feet.size()]).length());

@@ -40,8 +40,8 @@ Json glass(double alpha, double ior) {
     return bsdf;
 }
 
-Json metal(const Metal& kind, double alpha) {
-    Json bsdf = {{"type", alpha < kLeastAlpha ? "conductor" : "roughconductor"}, {"eta", triple(kind.eta)}, {"k", triple(kind.k)}};
+Json metal(const char* material, double alpha) {
+    Json bsdf = {{"type", alpha < kLeastAlpha ? "conductor" : "roughconductor"}, {"material", material}};
     if (alpha >= kLeastAlpha) bsdf["alpha"] = alpha;
     return bsdf;
 }

@@ -21,13 +21,8 @@ Json diffuse(const Spectrum& reflectance);
 Json twosided(const Json& bsdf);
 /// Microfacets of roughness alpha; below 0.0001, which is the least that these BSDFs have, a smooth surface.
 Json glass(double alpha, double ior);
-/// Complex index of refraction η + ik for red, green and blue.
-struct Metal {
-    Spectrum eta, k;
-};
-inline const Metal kGold{{0.143, 0.375, 1.442}, {3.983, 2.386, 1.603}}, kAluminium{{1.657, 0.880, 0.521}, {9.224, 6.270, 4.837}};
-/// Roughness as for glass.
-Json metal(const Metal& kind, double alpha);
+/// A metal by its name in core/scene/bsdfs/metals.h; roughness as for glass.
+Json metal(const char* material, double alpha);
 
 Json sphere(const Vec3d& center, double radius, const Json& bsdf);
 /// An open cylinder, seen from both sides.

@@ -35,7 +35,7 @@ public:
         MeshBuilder floor;
         floor.quad({-w, 0, w}, {w, 0, w}, {w, 0, -w}, {-w, 0, -w});
         scene["floor"] = floor.shape(diffuse(0.6));
-        scene["ring"] = tube({0, 0, 0}, {0, p_.height * r, 0}, r, metal(kGold, p_.alpha));
+        scene["ring"] = tube({0, 0, 0}, {0, p_.height * r, 0}, r, metal("Au", p_.alpha));
         scene["light"] = discLight(Vec3d(-std::cos(angle), std::sin(angle), 0) * (kLightDistance * r), {0, 0, 0}, p_.lightWidth, kIrradiance);
         return scene;
     }
