@@ -48,9 +48,9 @@ void Scene::vertexAt(const Vec3f& origin, const Vec3f& direction, const Hit& hit
     const Shape& shape = shapes[hit.shape];
     if (const Mesh* mesh = std::get_if<Mesh>(&shape.geometry)) {
         // From the triangle rather than the ray: the error then does not grow with the ray's length.
-        const auto& t = mesh->triangles[hit.primitive];
-        const Vec3f &a = mesh->positions[t[0]], &b = mesh->positions[t[1]], &c = mesh->positions[t[2]];
-        v.position = a + (b - a) * hit.uv.x + (c - a) * hit.uv.y;
+        v.position = mesh->point(hit.primitive, hit.uv);
+    } else if (const MeshInstance* instance = std::get_if<MeshInstance>(&shape.geometry)) {
+        v.position = instance->point(hit.primitive, hit.uv);
     } else if (const Sphere* sphere = std::get_if<Sphere>(&shape.geometry)) {
         const Vec3f outward = normalize(origin + direction * hit.distance - sphere->center);
         v.position = sphere->center + outward * sphere->radius;

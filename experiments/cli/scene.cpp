@@ -28,9 +28,11 @@ void exportScene(const SceneDescription& description, const std::string& format,
 
 void printScene(const SceneDescription& description, const SceneArguments& a) {
     const Scene scene = description.build();
-    std::size_t triangles = 0;
-    for (const Shape& shape : scene.shapes)
-        if (const Mesh* mesh = std::get_if<Mesh>(&shape.geometry)) triangles += mesh->triangles.size();
+    std::size_t triangles = 0, instances = 0;
+    for (const Shape& shape : scene.shapes) {
+        if (const Mesh* mesh = shape.triangleMesh()) triangles += mesh->triangles.size();
+        instances += std::holds_alternative<MeshInstance>(shape.geometry);
+    }
     const BoundingSphere& bounds = scene.bounds();
     if (a.json) {
         fmt::print("{}\n",
@@ -39,6 +41,7 @@ void printScene(const SceneDescription& description, const SceneArguments& a) {
                          {"width", scene.sensor->width()},
                          {"height", scene.sensor->height()},
                          {"shapes", scene.shapes.size()},
+                         {"mesh_instances", instances},
                          {"triangles", triangles},
                          {"materials", scene.materials.size()},
                          {"emitters", scene.emitters.size()},
@@ -50,8 +53,8 @@ void printScene(const SceneDescription& description, const SceneArguments& a) {
                          {"dictionary", description.dictionary()}}));
         return;
     }
-    fmt::print("image      {} x {}\nshapes     {} ({} triangles)\nmaterials  {}\nemitters   {}\n",
-               scene.sensor->width(), scene.sensor->height(), scene.shapes.size(), triangles, scene.materials.size(),
+    fmt::print("image      {} x {}\nshapes     {} ({} of them meshes of instances; {} triangles)\nmaterials  {}\nemitters   {}\n",
+               scene.sensor->width(), scene.sensor->height(), scene.shapes.size(), instances, triangles, scene.materials.size(),
                scene.emitters.size());
     fmt::print("bounds     center {:.6g} {:.6g} {:.6g}, radius {:.6g}\n", bounds.center.x, bounds.center.y,
                bounds.center.z, bounds.radius);

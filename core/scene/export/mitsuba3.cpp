@@ -13,6 +13,7 @@
 #include "core/scene/loading/entries.h"
 #include "core/scene/loading/plugin_table.h"
 #include "core/scene/loading/sensors.h"
+#include "core/scene/loading/shapes.h"
 #include "core/scene/loading/transform.h"
 #include "core/scene/mesh_io.h"
 
@@ -95,7 +96,7 @@ public:
     Exporter(const SceneDescription& description, const std::filesystem::path& folder)
         : scene_(description.build()), filmSize_(description.filmSize()), folder_(folder) {
         files_.folder = description.folder();
-        dictionary_ = withClearSensors(JsonNode(description.dictionary()));
+        dictionary_ = groupsApart(withClearSensors(JsonNode(description.dictionary())));
     }
 
     std::vector<std::string> run();
@@ -108,7 +109,8 @@ private:
     pugi::xml_node plugin(pugi::xml_node parent, const JsonNode& node);
     void property(pugi::xml_node parent, const ParameterInfo& parameter, const JsonNode& value);
     std::string copyFile(const JsonNode& filename, const char* tag);
-    void mesh(const JsonNode& node);
+    pugi::xml_node mesh(pugi::xml_node parent, const JsonNode& node);
+    JsonNode groupsApart(const JsonNode& dictionary) const;
     JsonNode withClearSensors(const JsonNode& dictionary) const;
 
     const std::map<std::string, TaggedPlugin> plugins_ = taggedPlugins();
@@ -174,6 +176,7 @@ pugi::xml_node Exporter::plugin(pugi::xml_node parent, const JsonNode& node) {
         leaveOut(node, fmt::format("{}, written as {},", inQuotes(pluginName(node)), inQuotes(pluginName(written))));
         return plugin(parent, written);
     }
+    if (pluginName(node) == "mesh") return mesh(parent, node);
     const TaggedPlugin& known = plugins_.at(pluginName(node));
     pugi::xml_node xml = parent.append_child(known.tag);
     xml.append_attribute("type") = pluginName(node).c_str();
@@ -192,20 +195,35 @@ pugi::xml_node Exporter::plugin(pugi::xml_node parent, const JsonNode& node) {
 }
 
 /// `mesh` is Ulam's own.
-void Exporter::mesh(const JsonNode& node) {
-    const auto shape =
-        std::find_if(scene_.shapes.begin(), scene_.shapes.end(), [&](const Shape& s) { return s.id == node.key(); });
-    const Mesh& loaded = std::get<Mesh>(shape->geometry);
-    const std::string& id = ids_.at(entryName(node));
-    const std::string file = fmt::format("meshes/{}", fileNames_.make(id, ".ply"));
+pugi::xml_node Exporter::mesh(pugi::xml_node parent, const JsonNode& node) {
+    const Shape shape = readShape(node, files_);
+    const Mesh& loaded = std::get<Mesh>(shape.geometry);
+    const std::string file = fmt::format("meshes/{}", fileNames_.make(entryName(node), ".ply"));
     folder_.write(file, plyBytes(loaded));
     Json ply = node.json();
     for (const ParameterInfo& parameter : plugins_.at("mesh").parameters) ply.erase(parameter.name);
     ply["type"] = "ply";
-    pugi::xml_node xml = plugin(root_, JsonNode(ply));
-    xml.append_attribute("id") = id.c_str();
+    pugi::xml_node xml = plugin(parent, JsonNode(ply));
     appendProperty(xml, "string", "filename", file);
     if (loaded.normals.empty()) appendProperty(xml, "boolean", "face_normals", "true");
+    return xml;
+}
+
+/// The dictionary with the groups that stand in instances as entries of their own: Mitsuba takes references only.
+JsonNode Exporter::groupsApart(const JsonNode& dictionary) const {
+    Json result = dictionary.json();
+    for (const JsonNode& node : entriesOf(dictionary)) {
+        if (pluginName(node) != "instance") continue;
+        for (const JsonNode& nested : nestedPlugins(node, plugins_.at("instance").parameters)) {
+            if (pluginName(nested) != "shapegroup") continue;
+            std::string name = fmt::format("{}_{}", node.key(), nested.key());
+            while (result.contains(name)) name += '_';
+            result[name] = nested.json();
+            result[name]["id"] = name;
+            result[node.key()][nested.key()] = {{"type", "ref"}, {"id", name}};
+        }
+    }
+    return JsonNode(std::move(result));
 }
 
 /// The dictionary with the defaults written out that Mitsuba does not share.
@@ -235,7 +253,6 @@ void Exporter::entry(const JsonNode& node) {
     const std::string& type = pluginName(node);
     const auto known = plugins_.find(type);
     if (noteIfUnused(node, files_) || known == plugins_.end()) return leaveOut(node, inQuotes(type));
-    if (type == "mesh") return mesh(node);
     plugin(root_, node).append_attribute("id") = ids_.at(entryName(node)).c_str();
 }
 

@@ -48,6 +48,7 @@ std::vector<Vec3f> vertexNormals(const Mesh& mesh) {
         }
     }
     std::vector<Vec3f> normals;
+    normals.reserve(sums.size());
     for (const Vec3d& sum : sums) normals.emplace_back(sum.normalized());
     return normals;
 }
