@@ -180,7 +180,7 @@ Json instances() {
     Json tile = wall(0.25, {1, 0, 0}, -90, {0, -0.2, 0}, 0.6);
     tile["bsdf"]["reflectance"] = {{"type", "checkerboard"}, {"color0", 0.2}, {"color1", {0.8, 0.7, 0.3}}, {"to_uv", {{{"type", "scale"}, {"value", {4, 3, 1}}}}}};
     Json brushed = wall(0.2, {0, 1, 0}, 20, {0.1, 0.25, 0.1}, 0.6);
-    brushed["bsdf"] = {{"type", "twosided"}, {"inside", {{"type", "roughconductor"}, {"alpha_u", 0.1}, {"alpha_v", 0.4}, {"eta", {0.2, 0.9, 1.1}}, {"k", {3.9, 2.4, 2.2}}}}};
+    brushed["bsdf"] = {{"type", "twosided"}, {"inside", {{"type", "roughconductor"}, {"distribution", "ggx"}, {"alpha_u", 0.1}, {"alpha_v", 0.4}, {"eta", {0.2, 0.9, 1.1}}, {"k", {3.9, 2.4, 2.2}}}}};
     Json gem = octahedron({0, 0, 0}, 0.2);
     gem["bsdf"] = {{"type", "dielectric"}};
     scene["flower"] = {{"type", "shapegroup"}, {"tile", tile}, {"gem", gem}, {"brushed", brushed}};
