@@ -6,11 +6,12 @@ namespace ulam {
 
 void Scene::finalize() {
     Imath::Box3f box;
-    for (Shape& shape : shapes) {
-        shape.prepare();
-        box.extendBy(shape.bounds());
-    }
+    for (const Shape& shape : shapes) box.extendBy(shape.bounds());
     if (!box.isEmpty()) bounds_ = {box.center(), std::max(1e-6f, length(box.size()) / 2) * 1.0001f};
+
+    // First, since building takes more memory for a while than what follows.
+    rays_ = RayTracer(shapes);
+    for (Shape& shape : shapes) shape.prepare();
 
     for (Emitter& emitter : emitters)
         if (auto* area = std::get_if<AreaEmitter>(&emitter); area && area->texture != kNone) area->emitted = meanRadiance(*area);
@@ -23,7 +24,6 @@ void Scene::finalize() {
     for (double p : powers) total += p;
     if (!(total > 0)) fail(ExitCode::InvalidConfig, "the scene has no light: add an emitter with positive radiance or intensity");
     emitterChoice_ = DiscreteDistribution(powers);
-    rays_ = RayTracer(shapes);
 }
 
 Spectrum Scene::meanRadiance(const AreaEmitter& area) const {

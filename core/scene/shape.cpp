@@ -12,9 +12,8 @@ Vec3d areaVector(const Mesh& mesh, uint32_t triangle) {
 /// What toWorldNormal makes of a vector of twice the area is a vector of twice the area.
 Vec3d areaVector(const MeshInstance& instance, uint32_t triangle) { return instance.toWorldNormal(areaVector(*instance.mesh, triangle)); }
 
-/// Zero where the mesh is flat, or opposite normals cancel out.
+/// Of a mesh that has normals; zero where opposite ones cancel out.
 Vec3f interpolatedNormal(const Mesh& mesh, const Vertex& v) {
-    if (mesh.normals.empty()) return Vec3f(0.0f);
     const auto& [i, j, k] = mesh.triangles[v.primitive];
     return mesh.normals[i] * (1 - v.uv.x - v.uv.y) + mesh.normals[j] * v.uv.x + mesh.normals[k] * v.uv.y;
 }
@@ -99,11 +98,13 @@ Vec3d MeshInstance::toWorldNormal(const Vec3d& n) const {
 
 void Shape::setNormals(Vertex& v) const {
     if (const Mesh* mesh = std::get_if<Mesh>(&geometry)) {
-        v.normal = v.shadingNormal = Vec3f(areaVector(*mesh, v.primitive).normalized());
+        v.normal = v.shadingNormal = mesh->faceNormals[v.primitive];
+        if (mesh->normals.empty()) return;
         const Vec3f n = interpolatedNormal(*mesh, v);
         if (length2(n) > 0) v.shadingNormal = normalize(n);
     } else if (const MeshInstance* instance = std::get_if<MeshInstance>(&geometry)) {
         v.normal = v.shadingNormal = Vec3f(areaVector(*instance, v.primitive).normalized());
+        if (instance->mesh->normals.empty()) return;
         const Vec3f n = interpolatedNormal(*instance->mesh, v);
         if (length2(n) > 0) v.shadingNormal = Vec3f(instance->toWorldNormal(Vec3d(n)).normalized());
     } else if (const Disk* disk = std::get_if<Disk>(&geometry)) {
@@ -173,13 +174,18 @@ void Shape::prepare() {
         area = 2 * kPi * cylinder->radius * cylinder->length;
         return;
     }
-    if (Mesh* mesh = std::get_if<Mesh>(&geometry)) mesh->prepare();
+    Mesh* mesh = std::get_if<Mesh>(&geometry);
+    const auto count = uint32_t(triangleMesh()->triangles.size());
+    const auto vectorOf = [&](uint32_t i) { return mesh ? areaVector(*mesh, i) : areaVector(std::get<MeshInstance>(geometry), i); };
+    if (mesh) {
+        mesh->faceNormals.resize(count);
+        for (uint32_t i = 0; i < count; ++i) mesh->faceNormals[i] = Vec3f(vectorOf(i).normalized());
+    }
     if (emitter == kNone) return;
-    std::vector<double> areas(triangleMesh()->triangles.size());
+    std::vector<double> areas(count);
     area = 0;
-    for (uint32_t i = 0; i < areas.size(); ++i) {
-        const Mesh* mesh = std::get_if<Mesh>(&geometry);
-        areas[i] = (mesh ? areaVector(*mesh, i) : areaVector(std::get<MeshInstance>(geometry), i)).length() / 2;
+    for (uint32_t i = 0; i < count; ++i) {
+        areas[i] = vectorOf(i).length() / 2;
         area += areas[i];
     }
     triangles = DiscreteDistribution(areas);

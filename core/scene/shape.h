@@ -22,7 +22,8 @@ struct Mesh {
     std::vector<Vec3f> normals;
     std::vector<Vec2f> texcoords;
     std::vector<std::array<uint32_t, 3>> triangles;
-    Imath::Box3f box;  ///< of the positions; filled by prepare()
+    std::vector<Vec3f> faceNormals;  ///< geometric, unit, one a triangle; filled by Shape::prepare(), not in groups
+    Imath::Box3f box;                ///< of the positions; filled by prepare()
 
     Vec3f point(uint32_t triangle, const Vec2f& uv) const {
         const auto& [i, j, k] = triangles[triangle];
@@ -101,7 +102,7 @@ struct Shape {
     Sample2 invertPoint(const Vertex& v) const;
     /// Holds the shape.
     Imath::Box3f bounds() const;
-    /// Area and, on emitters, the distribution over triangles: call once the geometry is there.
+    /// Face normals, area and, on emitters, the distribution over triangles: call once the geometry is there.
     void prepare();
     /// The triangles, in world space or in a group's; null of other shapes.
     const Mesh* triangleMesh() const;

@@ -86,6 +86,7 @@ Mesh placeMesh(Mesh mesh, const MeshPlacement& placement, const JsonNode& shape,
     for (auto& triangle : mesh.triangles)
         if (backward(triangle)) std::swap(triangle[1], triangle[2]);
     if (mesh.normals.empty() && placement.normals == MeshPlacement::Normals::Smooth) mesh.normals = vertexNormals(mesh);
+    mesh.prepare();
     return mesh;
 }
 

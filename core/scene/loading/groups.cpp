@@ -100,7 +100,6 @@ std::vector<Shape> makeGroup(std::vector<Shape> members) {
     for (Shape& shape : members) {
         Mesh* mesh = std::get_if<Mesh>(&shape.geometry);
         if (!mesh) break;
-        mesh->prepare();
         shape.geometry = MeshInstance{std::make_shared<const Mesh>(std::move(*mesh)), meshes++};
     }
     return members;
