@@ -36,6 +36,7 @@ private:
     JsonNode sensorNode() const;
     JsonNode resolve(const JsonNode& node) override;
     uint32_t texture(const JsonNode& node, const ParameterInfo& parameter) override;
+    bool isTexture(const JsonNode& node) const override;
     JsonNode named(const JsonNode& reference, PluginKind kind, const char* what) const;
     uint32_t material(const JsonNode& node);
     uint32_t addMaterial(Material material);
@@ -87,6 +88,13 @@ JsonNode SceneBuilder::named(const JsonNode& node, PluginKind kind, const char* 
         names.push_back(name);
     }
     unknownName("entry of the scene", id.string(), names, id.where());
+}
+
+bool SceneBuilder::isTexture(const JsonNode& node) const {
+    if (pluginName(node) != "ref") return contains(scenePlugins(PluginKind::Textures), pluginName(node));
+    for (const JsonNode& entry : entries())
+        if (entryName(entry) == node.at("id").string()) return contains(scenePlugins(PluginKind::Textures), pluginName(entry));
+    return false;
 }
 
 uint32_t SceneBuilder::texture(const JsonNode& node, const ParameterInfo& parameter) {

@@ -32,27 +32,38 @@ Vec2f texcoordOf(const Cylinder& cylinder, const Vertex& v) {
     return {float(inverseAzimuth(p.x, p.y)), p.z / cylinder.length};
 }
 
-Vec3f tangentOf(const Mesh& mesh, const Vertex& v) {
-    const auto& [i, j, k] = mesh.triangles[v.primitive];
+Tangents tangentsOf(const Mesh& mesh, const Vertex& v) {
     if (!mesh.texcoords.empty()) {
+        const auto& [i, j, k] = mesh.triangles[v.primitive];
         const Vec2f a = mesh.texcoords[j] - mesh.texcoords[i], b = mesh.texcoords[k] - mesh.texcoords[i];
-        const float determinant = a.x * b.y - a.y * b.x;
-        const Vec3f t = (mesh.positions[j] - mesh.positions[i]) * b.y - (mesh.positions[k] - mesh.positions[i]) * a.y;
-        if (determinant != 0 && length2(t) > 0) return determinant > 0 ? t : -t;
+        const Vec3f e = mesh.positions[j] - mesh.positions[i], f = mesh.positions[k] - mesh.positions[i];
+        const float scale = 1 / (a.x * b.y - a.y * b.x);
+        const Tangents t{(e * b.y - f * a.y) * scale, (f * a.x - e * b.x) * scale};
+        // Not where the texture coordinates are all on one line, nor where they or the edges are beyond single precision.
+        const auto usable = [](const Vec3f& d) { return length2(d) > 0 && std::isfinite(length2(d)); };
+        if (usable(t.u) && usable(t.v)) return t;
     }
-    return Frame(v.normal).s;
+    const Frame frame(v.normal);
+    return {frame.s, frame.t};
 }
-/// Around the third axis; at the poles any direction will do.
-Vec3f aroundAxis(const Axes& axes, const Vec3f& p) {
-    const Vec3f t = axes[1] * dot(p, axes[0]) - axes[0] * dot(p, axes[1]);
-    return length2(t) > 0 ? t : axes[0];
+/// ∂p/∂u of an azimuth 2πu around the third axis.
+Vec3f aroundAxis(const Axes& axes, float x, float y) { return (axes[1] * x - axes[0] * y) * float(2 * kPi); }
+
+Tangents tangentsOf(const Sphere& sphere, const Vertex& v) {
+    const Axes& axes = sphere.axes;
+    const Vec3f p = inAxes(axes, v.position - sphere.center);
+    const float r = std::hypot(p.x, p.y), cosPhi = r > 0 ? p.x / r : 1, sinPhi = r > 0 ? p.y / r : 0;
+    return {r > 0 ? aroundAxis(axes, p.x, p.y) : axes[1], ((axes[0] * cosPhi + axes[1] * sinPhi) * p.z - axes[2] * r) * float(kPi)};
 }
-Vec3f tangentOf(const Sphere& sphere, const Vertex& v) { return aroundAxis(sphere.axes, v.position - sphere.center); }
-Vec3f tangentOf(const Disk& disk, const Vertex& v) {
-    const Vec3f t = disk.axisX * v.uv.x + disk.axisY * v.uv.y;
-    return length2(t) > 0 ? t : disk.axisX;
+Tangents tangentsOf(const Disk& disk, const Vertex& v) {
+    const float r = v.uv.length();
+    if (!(r > 0)) return {disk.axisX, disk.axisY};
+    return {(disk.axisX * v.uv.x + disk.axisY * v.uv.y) * (1 / r), (disk.axisY * v.uv.x - disk.axisX * v.uv.y) * float(2 * kPi)};
 }
-Vec3f tangentOf(const Cylinder& cylinder, const Vertex& v) { return aroundAxis(cylinder.axes, v.position - cylinder.base); }
+Tangents tangentsOf(const Cylinder& cylinder, const Vertex& v) {
+    const Vec3f p = inAxes(cylinder.axes, v.position - cylinder.base);
+    return {aroundAxis(cylinder.axes, p.x, p.y), cylinder.axes[2] * cylinder.length};
+}
 
 }  // namespace
 
@@ -78,8 +89,8 @@ Vec2f Shape::texcoord(const Vertex& v) const {
     return std::visit([&](const auto& g) { return texcoordOf(g, v); }, geometry);
 }
 
-Vec3f Shape::tangent(const Vertex& v) const {
-    return std::visit([&](const auto& g) { return tangentOf(g, v); }, geometry);
+Tangents Shape::tangents(const Vertex& v) const {
+    return std::visit([&](const auto& g) { return tangentsOf(g, v); }, geometry);
 }
 
 Vertex Shape::samplePoint(uint32_t shapeIndex, double u, double v) const {

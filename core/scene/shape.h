@@ -49,6 +49,12 @@ struct Cylinder {
     Axes axes = kWorldAxes;
 };
 
+/// ∂p/∂u and ∂p/∂v of the parametrisation that texcoord() gives. Where one of them vanishes (at the poles of a sphere and
+/// the centre of a disk), a vector along its limit stands for it, of any length but 0.
+struct Tangents {
+    Vec3f u, v;
+};
+
 inline constexpr uint32_t kNone = 0xffffffffu;
 
 struct Shape {
@@ -64,8 +70,10 @@ struct Shape {
     void setNormals(Vertex& v) const;
     /// Surface parameters of a vertex, for textures.
     Vec2f texcoord(const Vertex& v) const;
-    /// ∂p/∂u, for anisotropic BSDFs: of any length, not 0.
-    Vec3f tangent(const Vertex& v) const;
+    /// Derivatives by the surface parameters; on a mesh without texture coordinates, any frame of the normal.
+    Tangents tangents(const Vertex& v) const;
+    /// ∂p/∂u, for anisotropic BSDFs.
+    Vec3f tangent(const Vertex& v) const { return tangents(v).u; }
     /// A point uniform by area from two numbers (density 1 / area), and the numbers of a point.
     Vertex samplePoint(uint32_t shapeIndex, double u, double v) const;
     Sample2 invertPoint(const Vertex& v) const;

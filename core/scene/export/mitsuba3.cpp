@@ -170,8 +170,8 @@ pugi::xml_node Exporter::plugin(pugi::xml_node parent, const JsonNode& node) {
         return reference;
     }
     if (const auto nearest = nearestInMitsuba3(node)) {
-        const JsonNode written(*nearest);
-        leaveOut(node, fmt::format("{}, written as {},", inQuotes(pluginName(node)), inQuotes(pluginName(written))));
+        const JsonNode written(nearest->dictionary);
+        if (!nearest->same) leaveOut(node, fmt::format("{}, written as {},", inQuotes(pluginName(node)), inQuotes(pluginName(written))));
         return plugin(parent, written);
     }
     const TaggedPlugin& known = plugins_.at(pluginName(node));

@@ -37,20 +37,50 @@ Json glossyPrincipled(const JsonNode& node, double alphaU, double alphaV) {
     return result;
 }
 
+/// The nested BSDFs from number i on, of which the weights' rest is left, one blended with those that follow.
+Json blended(const std::vector<JsonNode>& nested, const std::vector<double>& weights, size_t i, double rest) {
+    if (i == nested.size()) return {{"type", "diffuse"}, {"reflectance", 0.0}};
+    const double share = rest > 0 ? std::min(1.0, weights[i] / rest) : 0;
+    if (i + 1 == nested.size() && share > 1 - 1e-9) return nested[i].json();
+    return {{"type", "blendbsdf"}, {"weight", 1 - share}, {"a", nested[i].json()}, {"b", blended(nested, weights, i + 1, rest - weights[i])}};
+}
+
+/// A coat over a diffuse base, or the base alone.
+Json coated(const JsonNode& node, bool rough) {
+    const auto nested = nestedPlugins(node, {});
+    if (nested.size() != 1 || pluginName(nested[0]) != "diffuse") return nested.at(0).json();
+    Json result = {{"type", rough ? "roughplastic" : "plastic"}, {"nonlinear", true}, {"diffuse_reflectance", given(nested[0], "reflectance", 0.5)}};
+    // Mitsuba 3's coats are of polypropylene unless they say so.
+    result["int_ior"] = given(node, "int_ior", "bk7");
+    for (const char* name : {"ext_ior", "specular_reflectance", "alpha", "distribution"})
+        if (const auto value = node.find(name)) result[name] = value->json();
+    return result;
+}
+
 }  // namespace
 
-std::optional<Json> nearestInMitsuba3(const JsonNode& node) {
+std::optional<Nearest> nearestInMitsuba3(const JsonNode& node) {
     const std::string& type = pluginName(node);
-    if (type == "roughdiffuse") return Json{{"type", "diffuse"}, {"reflectance", given(node, "reflectance", 0.5)}};
+    if (type == "mixturebsdf") {
+        const auto nested = nestedPlugins(node, {});
+        return Nearest{blended(nested, node.at("weights").numbers(nested.size()), 0, 1), true};
+    }
+    if (type == "blendbsdf" && !node.find("weight")) {
+        Json result = node.json();
+        result["weight"] = 0.5;
+        return Nearest{std::move(result), true};
+    }
+    if (type == "coating" || type == "roughcoating") return Nearest{coated(node, type == "roughcoating"), false};
+    if (type == "roughdiffuse") return Nearest{{{"type", "diffuse"}, {"reflectance", given(node, "reflectance", 0.5)}}, false};
     if (type == "phong") {
         // As wide as Beckmann's distribution of this roughness (Walter et al. 2007, §5.2).
         const double alpha = std::sqrt(2 / (number(node, "exponent", Phong::Parameters().exponent) + 2));
-        return glossyPrincipled(node, alpha, alpha);
+        return Nearest{glossyPrincipled(node, alpha, alpha), false};
     }
     if (type == "ward") {
         const double alpha = number(node, "alpha", Ward::Parameters().alpha);
         const double u = number(node, "alpha_u", 0), v = number(node, "alpha_v", 0);
-        return glossyPrincipled(node, u > 0 ? u : alpha, v > 0 ? v : alpha);
+        return Nearest{glossyPrincipled(node, u > 0 ? u : alpha, v > 0 ? v : alpha), false};
     }
     return std::nullopt;
 }

@@ -7,11 +7,18 @@
 
 namespace ulam {
 
-/// The dictionary of the nearest plugin of Mitsuba 3; none where it has the plugin itself. Textures of colours stay where the
-/// other plugin can hold them, other textures become their parameter's default.
-///   roughdiffuse  diffuse, without the roughness
-///   phong, ward   principled with the same base, lobe width and reflectance at normal incidence; its gloss is grey and rises
-///                 towards grazing angles
-std::optional<Json> nearestInMitsuba3(const JsonNode& node);
+struct Nearest {
+    Json dictionary;
+    bool same;  ///< the same scattering in other words
+};
+
+/// The nearest plugin of Mitsuba 3; none where it has the plugin itself. Textures of colours stay where the other plugin can
+/// hold them, other textures become their parameter's default.
+///   mixturebsdf            blends of blends: the same
+///   coating, roughcoating  over diffuse (roughplastic, plastic) with `nonlinear`; over others what is nested, without the coat
+///   roughdiffuse           diffuse, without the roughness
+///   phong, ward            principled with the same base, lobe width and reflectance at normal incidence; its gloss is grey
+///                          and rises towards grazing angles
+std::optional<Nearest> nearestInMitsuba3(const JsonNode& node);
 
 }  // namespace ulam

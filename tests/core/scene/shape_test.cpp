@@ -27,6 +27,28 @@ Shape sphere(bool flipped) {
     return shape;
 }
 
+/// One of each kind, none of them along the axes of the world.
+std::vector<Shape> turnedShapes() {
+    const Axes axes{normalize(Vec3f(1, 2, 2)), normalize(Vec3f(2, 1, -2)), normalize(Vec3f(2, -2, 1))};
+    Axes mirrored = axes;
+    mirrored[0] = -mirrored[0];
+    Mesh mesh;
+    mesh.positions = {{0, 0, 2}, {2, 0.5f, 2}, {0, 1, 1}, {0.5f, -3, 2}};
+    mesh.texcoords = {{0.1f, 0.2f}, {0.7f, 0.1f}, {0.3f, 0.9f}, {0, 0.8f}};  // of opposite orientations
+    mesh.triangles = {{0, 1, 2}, {0, 3, 1}};
+    std::vector<Shape> shapes(5);
+    shapes[0].geometry = mesh;
+    shapes[1].geometry = Sphere{{1, 2, 3}, 0.5f, axes};
+    shapes[2].geometry = Sphere{{1, 2, 3}, 2, mirrored};
+    shapes[3].geometry = Disk{{3, 2, 1}, {2, 0, 1}, {1, 1, 0}, normalize(cross({2, 0, 1}, {1, 1, 0}))};
+    shapes[4].geometry = Cylinder{{3, 2, 1}, 0.5f, 3, axes};
+    for (Shape& shape : shapes) {
+        shape.emitter = 0;
+        shape.prepare();
+    }
+    return shapes;
+}
+
 bool near(const Vec3f& a, const Vec3f& b, float tolerance = 1e-6f) {
     return length(a - b) <= tolerance;
 }
@@ -105,5 +127,61 @@ TEST_CASE("shading normals are interpolated, geometric ones come from the windin
         v.uv = {0.5f, 0.5f};
         shape.setNormals(v);
         CHECK(near(v.shadingNormal, {0, 0, 1}));
+    }
+}
+
+TEST_CASE("tangents are the derivatives of the place by the surface parameters") {
+    Random random({7, 8}, 0, 0);
+    for (const Shape& shape : turnedShapes()) {
+        INFO("kind " << shape.geometry.index());
+        int compared = 0;
+        for (int i = 0; i < 300; ++i) {
+            const double a = 0.9 * random(), b = 0.1 + 0.8 * random();
+            const Vertex v = shape.samplePoint(0, a, b), w = shape.samplePoint(0, a + 1e-3 * random(), b + 1e-3 * random());
+            const Vec2f step = shape.texcoord(w) - shape.texcoord(v);
+            // Not across a seam, nor onto the next triangle, nor near poles and centres, where the parameters are bent much.
+            const Vec2f at = shape.texcoord(v);
+            if (v.primitive != w.primitive || step.length() > 0.02f || at.x < 0.1f || std::abs(at.y - 0.5f) > 0.4f) continue;
+            const Tangents t = shape.tangents(v);
+            const Vec3f moved = w.position - v.position;
+            REQUIRE(length(t.u * step.x + t.v * step.y - moved) < 0.03f * length(moved) + 2e-6f);
+            CHECK(near(shape.tangent(v), t.u));
+            ++compared;
+        }
+        CHECK(compared > 100);
+    }
+}
+
+TEST_CASE("tangents where the surface has no parameters of its own") {
+    Vertex v{};
+    SECTION("no texture coordinates: a frame of the normal") {
+        const Shape shape = unequalTriangles();
+        shape.setNormals(v);
+        const Tangents t = shape.tangents(v);
+        CHECK(near(cross(t.u, t.v), v.normal));
+    }
+    SECTION("texture coordinates all on one line: likewise") {
+        Mesh mesh;
+        mesh.positions = {{0, 0, 2}, {2, 0, 2}, {0, 1, 2}};
+        mesh.texcoords = {{0, 0}, {1, 1}, {2, 2}};
+        mesh.triangles = {{0, 1, 2}};
+        Shape shape;
+        shape.geometry = mesh;
+        shape.prepare();
+        shape.setNormals(v);
+        const Tangents t = shape.tangents(v);
+        CHECK(near(cross(t.u, t.v), {0, 0, 1}));
+    }
+    SECTION("the poles of a sphere and the centre of a disk: along the limits") {
+        v.position = {1, 2, 3.5f};
+        Tangents t = sphere(false).tangents(v);
+        CHECK(near(normalize(cross(t.u, t.v)), {0, 0, -1}));
+        CHECK(length(t.v) == Approx(kPi / 2));
+        Shape disk;
+        disk.geometry = Disk{{0, 0, 0}, {2, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+        v.uv = {0, 0};
+        t = disk.tangents(v);
+        CHECK(near(t.u, {2, 0, 0}));
+        CHECK(near(t.v, {0, 1, 0}));
     }
 }
