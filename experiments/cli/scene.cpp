@@ -16,7 +16,7 @@ struct SceneArguments {
     std::string scene;
     std::vector<std::string> assignments, target;
     bool info = false, json = false;
-    std::shared_ptr<XmlOptions> xml;
+    std::shared_ptr<SceneFileOptions> xml;
 };
 
 void exportScene(const SceneDescription& description, const std::string& format, const std::string& folder) {
@@ -79,8 +79,8 @@ void runScene(const SceneArguments& a) {
 void addSceneCommand(CLI::App& app) {
     auto a = std::make_shared<SceneArguments>();
     CLI::App& command = *app.add_subcommand("scene", "what is in a scene; write it for another renderer");
-    command.add_option("scene", a->scene, "JSON or XML file, generator (see: ulam list generators), or JSON")->required();
-    a->xml = addXmlOptions(command);
+    command.add_option("scene", a->scene, "JSON, XML or pbrt file, generator (see: ulam list generators), or JSON")->required();
+    a->xml = addSceneFileOptions(command);
     command.add_option("--set", a->assignments, "KEY=VALUE in the scene's dictionary (repeatable)")
         ->type_name("PATH=VALUE")
         ->take_all()
