@@ -33,19 +33,17 @@ size_t Materials::add(MaterialDefinition definition) {
 
 size_t Materials::indexOf(const MaterialUse& use) const {
     if (use.name.empty()) return use.index;
+    if (const auto found = named_.find(use.name); found != named_.end()) return found->second;
     std::vector<std::string> names;
     for (const auto& [name, index] : named_) names.push_back(name);
-    const auto found = named_.find(use.name);
-    if (found == named_.end()) unknownName("material", use.name, names, use.place.text());
-    return found->second;
+    unknownName("material", use.name, names, use.place.text());
 }
 
 const Materials::Converted& Materials::convert(size_t index, Parametrization parametrization) {
-    const auto known = converted_.find({index, parametrization});
-    if (known != converted_.end()) return known->second;
     // Without textures the parametrisation does not matter.
-    const auto other = std::find_if(converted_.begin(), converted_.end(), [&](const auto& c) { return c.first.first == index; });
-    if (other != converted_.end() && !other->second.textured) return other->second;
+    const auto any = converted_.lower_bound({index, Parametrization::Same});
+    if (any != converted_.end() && any->first.first == index && !any->second.textured) return any->second;
+    if (const auto known = converted_.find({index, parametrization}); known != converted_.end()) return known->second;
     const MaterialDefinition& material = definitions_[index];
     const auto outer = std::tuple(entry_, parametrization_, textured_);
     if (++depth_ > kDeepestMixture)
@@ -84,8 +82,8 @@ bool Materials::isTextured(const MaterialUse& use) {
 
 void Materials::addUnused() {
     for (const auto& [name, index] : named_) {
-        const auto isOf = [i = index](const auto& c) { return c.first.first == i; };
-        if (std::none_of(converted_.begin(), converted_.end(), isOf)) convert(index, Parametrization::Same);
+        const auto any = converted_.lower_bound({index, Parametrization::Same});
+        if (any == converted_.end() || any->first.first != index) convert(index, Parametrization::Same);
     }
 }
 

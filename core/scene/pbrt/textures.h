@@ -23,7 +23,7 @@ struct Texture {
 };
 
 /// Surface parameters of shapes here as pbrt has them; they differ by an affine map.
-enum class Parametrization { Same, Sphere, Disk };
+enum class Parametrization { Same, Sphere, Disk };  // `Same` is the first
 
 class Textures {
 public:
