@@ -196,6 +196,8 @@ Material readMaterial(const JsonNode& node, PluginResolver& resolver) {
     return table().find(node).read(node, resolver);
 }
 
+double refractiveIndex(const JsonNode& node) { return node.isString() ? namedIndex(node) : node.number(); }
+
 Material defaultMaterial(bool emits) {
     Diffuse::Parameters parameters;
     if (emits) parameters.reflectance = Spectrum(0.0);

@@ -14,12 +14,6 @@ Matrix4 affine(const std::array<double, 2>& u, const std::array<double, 2>& v, c
     return {u[0], u[1], 0, 0, v[0], v[1], 0, 0, 0, 0, 1, 0, offset[0], offset[1], 0, 1};
 }
 
-const Matrix4& toPbrt(Parametrization parametrization) {
-    // A sphere's v grows from the south pole there. A disk has (u, v) = (azimuth / 2π, 1 − radius) there.
-    static const Matrix4 same, sphere = affine({1, 0}, {0, -1}, {0, 1}), disk = affine({0, -1}, {1, 0}, {0, 1});
-    return parametrization == Parametrization::Sphere ? sphere : parametrization == Parametrization::Disk ? disk : same;
-}
-
 Matrix4 mapping(const Parameters& p) {
     const std::string kind = p.text("mapping", "uv");
     if (kind != "uv")
@@ -37,6 +31,12 @@ Texture constant(const Spectrum& colour, const Place& place) {
 }
 
 }  // namespace
+
+const Matrix4& toPbrt(Parametrization parametrization) {
+    // A sphere's v grows from the south pole there. A disk has (u, v) = (azimuth / 2π, 1 − radius) there.
+    static const Matrix4 same, sphere = affine({1, 0}, {0, -1}, {0, 1}), disk = affine({0, -1}, {1, 0}, {0, 1});
+    return parametrization == Parametrization::Sphere ? sphere : parametrization == Parametrization::Disk ? disk : same;
+}
 
 void Textures::define(const std::string& name, const std::string& valueType, const std::string& type, const Parameters& parameters) {
     if (valueType != "float" && valueType != "spectrum")

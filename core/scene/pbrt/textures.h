@@ -25,6 +25,9 @@ struct Texture {
 /// Surface parameters of shapes here as pbrt has them; they differ by an affine map.
 enum class Parametrization { Same, Sphere, Disk };  // `Same` is the first
 
+/// From the parameters of such a shape here to pbrt's; points (u, v, 0) are rows.
+const Matrix4& toPbrt(Parametrization parametrization);
+
 class Textures {
 public:
     explicit Textures(Dictionary& dictionary) : dictionary_(dictionary) {}
