@@ -8,7 +8,8 @@ namespace {
 constexpr int kSubsamples = 4;  // along each side of a texel
 
 const Rgb& nearest(const Image& image, const Sample2& p) {
-    return image.at(std::min(int(p.u * image.width), image.width - 1), std::min(int(p.v * image.height), image.height - 1));
+    return image.at(std::min(int(p.u * image.width), image.width - 1),
+                    std::min(int(p.v * image.height), image.height - 1));
 }
 
 }  // namespace
@@ -27,7 +28,9 @@ Sample2 octahedralPoint(const Vec3d& direction) {
     const double turn = std::atan2(std::abs(direction.y), std::abs(direction.x)) * 2 / kPi;
     double x = r * (1 - turn), y = r * turn;
     if (direction.z < 0) std::tie(x, y) = std::pair(1 - y, 1 - x);
-    const auto toUnit = [](double value, double sign) { return std::clamp((std::copysign(value, sign) + 1) / 2, 0.0, 1.0); };
+    const auto toUnit = [](double value, double sign) {
+        return std::clamp((std::copysign(value, sign) + 1) / 2, 0.0, 1.0);
+    };
     return {toUnit(x, direction.x), toUnit(y, direction.y)};
 }
 
@@ -60,7 +63,8 @@ Image octahedralFromMap(const EnvironmentMap& map, int size) {
             Spectrum sum(0.0);
             for (int sj = 0; sj < kSubsamples; ++sj)
                 for (int si = 0; si < kSubsamples; ++si)
-                    sum += map.radiance(Vec3f(octahedralDirection((i + (si + 0.5) / kSubsamples) / size, (j + (sj + 0.5) / kSubsamples) / size)));
+                    sum += map.radiance(Vec3f(octahedralDirection((i + (si + 0.5) / kSubsamples) / size,
+                                                                  (j + (sj + 0.5) / kSubsamples) / size)));
             result.at(i, j) = Rgb(sum / (kSubsamples * kSubsamples));
         }
     return result;

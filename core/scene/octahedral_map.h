@@ -1,6 +1,7 @@
 #pragma once
-// Pictures of all directions as pbrt-v4 has them: the square of an unfolded octahedron, on which equal areas are equal solid
-// angles (P. Clarberg, "Fast equal-area mapping of the (hemi)sphere using SIMD", 2008). Its middle is +z, its corners are −z.
+// Pictures of all directions as pbrt-v4 has them: the square of an unfolded octahedron, on which equal areas are equal
+// solid angles (P. Clarberg, "Fast equal-area mapping of the (hemi)sphere using SIMD", 2008). Its middle is +z, its
+// corners are −z.
 
 #include "core/base/random.h"
 #include "core/scene/environment_map.h"

@@ -4,6 +4,7 @@
 
 #include "core/image/image_io.h"
 #include "core/scene/loading/plugin_table.h"
+#include "core/scene/loading/textures.h"
 #include "core/scene/mesh_io.h"
 #include "core/scene/octahedral_map.h"
 
@@ -29,7 +30,8 @@ std::string UniqueNames::make(const std::string& name, const std::string& ending
 
 std::string UniqueNames::makeFile(const std::filesystem::path& file) {
     const std::string ending = file.extension().string();
-    return make((file.parent_path() / file.stem()).string(), ending.empty() ? "" : fmt::format(".{}", plain(ending.substr(1))));
+    return make((file.parent_path() / file.stem()).string(),
+                ending.empty() ? "" : fmt::format(".{}", plain(ending.substr(1))));
 }
 
 std::string ExportAssets::copy(const JsonNode& filename, const std::string& subfolder) {
@@ -62,13 +64,7 @@ std::optional<ExportAssets::Baked> ExportAssets::bakedPicture(const JsonNode& pl
         return Baked{rest, image(latLongFromOctahedral(files.readImage(plugin.at("filename"), false)), "environment")};
     }
     if (type != "bitmap" || !(plugin.find("scale") || plugin.find("invert"))) return {};
-    const auto raw = plugin.find("raw"), scale = plugin.find("scale"), invert = plugin.find("invert");
-    Image picture = files.readImage(plugin.at("filename"), raw && raw->boolean());
-    const Rgb factor(scale ? parseSpectrum(*scale) : Spectrum(1.0));
-    for (Rgb& pixel : picture.pixels) {
-        pixel *= factor;
-        for (int c = 0; invert && invert->boolean() && c < 3; ++c) pixel[c] = std::max(0.0f, 1 - pixel[c]);
-    }
+    const Image picture = readPicture(plugin, files);
     for (const char* name : {"scale", "invert", "raw"}) rest.erase(name);  // what is written is linear
     return Baked{rest, image(picture, "picture")};
 }

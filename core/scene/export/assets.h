@@ -30,8 +30,8 @@ public:
     std::string copy(const JsonNode& filename, const std::string& subfolder);
     std::string mesh(const Mesh& mesh, const std::string& name);
     std::string image(const Image& image, const std::string& name);
-    /// An `envmap` or `bitmap` with parameters that only Ulam has, as a picture without them; nothing for other plugins.
-    /// `plugin`: the dictionary without these and without its filename.
+    /// An `envmap` or `bitmap` with parameters that only Ulam has, as a picture without them; nothing for other
+    /// plugins. `plugin`: the dictionary without these and without its filename.
     struct Baked {
         Json plugin;
         std::string file;

@@ -15,8 +15,8 @@ struct ExportFormat {
 
 class ExportFolder {
 public:
-    /// Fails with CannotWrite where there is anything at `place` but an empty folder or an earlier export of this format and
-    /// nothing else: nobody's files are lost.
+    /// Fails with CannotWrite where there is anything at `place` but an empty folder or an earlier export of this
+    /// format and nothing else: nobody's files are lost.
     ExportFolder(const std::filesystem::path& place, const ExportFormat& format);
     /// Removes what was not put in its place.
     ~ExportFolder();

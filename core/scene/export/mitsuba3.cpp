@@ -63,7 +63,10 @@ pugi::xml_node appendProperty(pugi::xml_node parent, const char* tag, const std:
 class Exporter {
 public:
     Exporter(const SceneDescription& description, const std::filesystem::path& folder)
-        : scene_(description.build()), filmSize_(description.filmSize()), folder_(folder, kFormat), assets_(folder_, description.folder()) {
+        : scene_(description.build()),
+          filmSize_(description.filmSize()),
+          folder_(folder, kFormat),
+          assets_(folder_, description.folder()) {
         dictionary_ = withClearSensors(JsonNode(description.dictionary()));
     }
 
@@ -109,7 +112,8 @@ void Exporter::property(pugi::xml_node parent, const ParameterInfo& parameter, c
         const char* tag = parameter.type != "json" ? "rgb" : name == "direction" ? "vector" : "point";
         appendProperty(parent, tag, name, decimals(value.numbers(3)));
     } else if (name == "filename") {
-        appendProperty(parent, "string", name, assets_.copy(value, std::string_view(parent.name()) == "shape" ? "meshes" : "textures"));
+        appendProperty(parent, "string", name,
+                       assets_.copy(value, std::string_view(parent.name()) == "shape" ? "meshes" : "textures"));
     } else if (value.isString()) {
         appendProperty(parent, "string", name, value.string());
     } else if (value.isBoolean()) {

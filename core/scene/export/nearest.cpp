@@ -25,7 +25,8 @@ double number(const JsonNode& node, const char* name, double otherwise) {
 double glossIor(const JsonNode& node) {
     const auto specular = node.find("specular_reflectance");
     const bool textured = specular && isPlugin(*specular) && pluginName(*specular) != "rgb";
-    const Spectrum reflectance = specular && !textured ? parseSpectrum(*specular) : GlossParameters().specularReflectance;
+    const Spectrum reflectance =
+        specular && !textured ? parseSpectrum(*specular) : GlossParameters().specularReflectance;
     const double root = std::sqrt(std::min(luminance(reflectance), 0.6));
     return (1 + root) / (1 - root);
 }
@@ -58,7 +59,7 @@ Json glossyPrincipled(const JsonNode& node) {
 }
 
 Json glossyPlastic(const Json& base, double ior, double alpha) {
-    return {{"type", "roughplastic"}, {"diffuse_reflectance", base}, {"int_ior", ior}, {"ext_ior", 1},
+    return {{"type", "roughplastic"}, {"diffuse_reflectance", base},           {"int_ior", ior},   {"ext_ior", 1},
             {"distribution", "ggx"},  {"alpha", std::clamp(alpha, 1e-4, 1.0)}, {"nonlinear", true}};
 }
 
@@ -69,9 +70,14 @@ Json plainPrincipled(const JsonNode& node) {
     const double specular = number(node, "specular", 0.5);
     const double ior = number(node, "eta", 2 / (1 - std::sqrt(0.08 * specular)) - 1);
     if (number(node, "metallic", 0) > 0.5)
-        return {{"type", "roughconductor"}, {"material", "none"}, {"specular_reflectance", base}, {"distribution", "ggx"}, {"alpha", alpha}};
+        return {{"type", "roughconductor"},
+                {"material", "none"},
+                {"specular_reflectance", base},
+                {"distribution", "ggx"},
+                {"alpha", alpha}};
     if (number(node, "spec_trans", 0) > 0.5)
-        return {{"type", "roughdielectric"}, {"int_ior", ior}, {"ext_ior", 1}, {"distribution", "ggx"}, {"alpha", alpha}};
+        return {
+            {"type", "roughdielectric"}, {"int_ior", ior}, {"ext_ior", 1}, {"distribution", "ggx"}, {"alpha", alpha}};
     return glossyPlastic(base, ior, alpha);
 }
 

@@ -7,10 +7,11 @@
 
 namespace ulam {
 
-/// The dictionary of the nearest plugin of Mitsuba 3; none where it has the plugin itself. Textures of colours stay where the
-/// other plugin can hold them, other textures become their parameter's default.
+/// The dictionary of the nearest plugin of Mitsuba 3; none where it has the plugin itself. Textures of colours stay
+/// where the other plugin can hold them, other textures become their parameter's default.
 ///   roughdiffuse  diffuse, without the roughness
-///   phong, ward   principled with the same base, lobe width and reflectance at normal incidence; its gloss is grey and rises
+///   phong, ward   principled with the same base, lobe width and reflectance at normal incidence; its gloss is grey and
+///   rises
 ///                 towards grazing angles
 std::optional<Json> nearestInMitsuba3(const JsonNode& node);
 

@@ -41,8 +41,9 @@ public:
           dictionary_(description.dictionary()),
           folder_(folder, kFormat),
           assets_(folder_, description.folder()),
-          materials_(assets_, [this](const JsonNode& node, std::string_view what) { leaveOut(node, what); },
-                     [this](const JsonNode& node) { return resolve(node); }) {}
+          materials_(
+              assets_, [this](const JsonNode& node, std::string_view what) { leaveOut(node, what); },
+              [this](const JsonNode& node) { return resolve(node); }) {}
 
     std::vector<std::string> run();
 
@@ -87,33 +88,41 @@ std::string Exporter::sensor(const JsonNode& node) {
     const double width = filmSize_.width, height = filmSize_.height;
     const Vec3d corner = at(0, 0), across = at(width, 0) - corner, down = at(0, height) - corner;
     const Vec3d right = across.normalized(), up = -down.normalized();
-    const double left = corner.dot(right), top = corner.dot(up), wide = across.length(), high = down.length(), half = std::min(wide, high) / 2;
-    const Matrix4 toWorld(right.x, right.y, right.z, 0, up.x, up.y, up.z, 0, axis.x, axis.y, axis.z, 0, camera.position().x, camera.position().y,
-                          camera.position().z, 1);
+    const double left = corner.dot(right), top = corner.dot(up), wide = across.length(), high = down.length(),
+                 half = std::min(wide, high) / 2;
+    const Matrix4 toWorld(right.x, right.y, right.z, 0, up.x, up.y, up.z, 0, axis.x, axis.y, axis.z, 0,
+                          camera.position().x, camera.position().y, camera.position().z, 1);
     const Matrix4 m = toWorld.inverse();
     const auto row = [&](int i) { return Vec3d(m[i][0], m[i][1], m[i][2]); };
     std::string text = transform(row(0), row(1), row(2), row(3));
     text += fmt::format("Camera \"perspective\" \"float fov\" {}", 2 * std::atan(half) * 180 / kPi);
     constexpr double kCentred = 1e-5;
     if (std::abs(left + wide / 2) > kCentred * wide || std::abs(top - high / 2) > kCentred * high)
-        text += fmt::format(" \"float screenwindow\" [ {} {} {} {} ]", left / half, (left + wide) / half, (top - high) / half, top / half);
+        text += fmt::format(" \"float screenwindow\" [ {} {} {} {} ]", left / half, (left + wide) / half,
+                            (top - high) / half, top / half);
     if (!camera.positionIsDelta())
-        text += fmt::format(" \"float lensradius\" {} \"float focaldistance\" {}", camera.apertureRadius(), node.at("focus_distance").number());
+        text += fmt::format(" \"float lensradius\" {} \"float focaldistance\" {}", camera.apertureRadius(),
+                            node.at("focus_distance").number());
     return text + "\n" + film(node);
 }
 
 std::string Exporter::film(const JsonNode& sensor) {
     const FilmSize& size = filmSize_;
-    std::string text = fmt::format("Film \"rgb\" \"integer xresolution\" {} \"integer yresolution\" {} \"string filename\" \"scene.exr\"", size.width, size.height);
+    std::string text = fmt::format(
+        "Film \"rgb\" \"integer xresolution\" {} \"integer yresolution\" {} \"string filename\" \"scene.exr\"",
+        size.width, size.height);
     if (size.cropWidth != size.width || size.cropHeight != size.height)
-        text += fmt::format(" \"integer pixelbounds\" [ {} {} {} {} ]", size.cropOffsetX, size.cropOffsetX + size.cropWidth, size.cropOffsetY,
-                            size.cropOffsetY + size.cropHeight);
+        text += fmt::format(" \"integer pixelbounds\" [ {} {} {} {} ]", size.cropOffsetX,
+                            size.cropOffsetX + size.cropWidth, size.cropOffsetY, size.cropOffsetY + size.cropHeight);
     text += "\nPixelFilter ";
     const double radius = scene_.filter.radius();
-    if (scene_.filter.type() == ReconstructionFilter::Type::Box) text += "\"box\"";
+    if (scene_.filter.type() == ReconstructionFilter::Type::Box)
+        text += "\"box\"";
     else if (scene_.filter.type() == ReconstructionFilter::Type::Tent)
         text += fmt::format("\"triangle\" \"float xradius\" {0} \"float yradius\" {0}", radius);
-    else text += fmt::format("\"gaussian\" \"float xradius\" {0} \"float yradius\" {0} \"float sigma\" {1}", radius, radius / 4);
+    else
+        text += fmt::format("\"gaussian\" \"float xradius\" {0} \"float yradius\" {0} \"float sigma\" {1}", radius,
+                            radius / 4);
     // What else stands in the sensor and its film has no meaning here.
     const std::vector<ParameterInfo> known = filmPlugins().at(0).parameters;
     for (const JsonNode& nested : nestedPlugins(sensor, {})) {
@@ -136,8 +145,10 @@ std::string Exporter::geometry(const Shape& shape, const std::string& name, bool
         const auto& [x, y, z] = sphere->axes;
         std::string text;
         // Axes matter to textures only, and pbrt may turn the normals of mirrored spheres.
-        if (textured && sphere->axes != kWorldAxes) text = transform(Vec3d(x), Vec3d(y), Vec3d(z), Vec3d(sphere->center));
-        else text = fmt::format("Translate {} {} {}\n", sphere->center.x, sphere->center.y, sphere->center.z);
+        if (textured && sphere->axes != kWorldAxes)
+            text = transform(Vec3d(x), Vec3d(y), Vec3d(z), Vec3d(sphere->center));
+        else
+            text = fmt::format("Translate {} {} {}\n", sphere->center.x, sphere->center.y, sphere->center.z);
         return text + fmt::format("Shape \"sphere\" \"float radius\" {}", sphere->radius);
     }
     if (const auto* disk = std::get_if<Disk>(&shape.geometry)) {
@@ -149,7 +160,8 @@ std::string Exporter::geometry(const Shape& shape, const std::string& name, bool
     if (const auto* cylinder = std::get_if<Cylinder>(&shape.geometry)) {
         const Vec3d x(cylinder->axes[0]), z(cylinder->axes[2]), y = textured ? Vec3d(cylinder->axes[1]) : z.cross(x);
         return transform(x, y, z, Vec3d(cylinder->base)) +
-               fmt::format("Shape \"cylinder\" \"float radius\" {} \"float zmin\" 0 \"float zmax\" {}", cylinder->radius, cylinder->length);
+               fmt::format("Shape \"cylinder\" \"float radius\" {} \"float zmin\" 0 \"float zmax\" {}",
+                           cylinder->radius, cylinder->length);
     }
     Mesh mesh = std::get<Mesh>(shape.geometry);
     if (textured && mesh.texcoords.empty()) {
@@ -179,11 +191,13 @@ void Exporter::shape(const JsonNode& node) {
                                                                                 : pbrt::Parametrization::Same;
     std::optional<JsonNode> bsdf;
     const std::vector<PluginInfo> known = shapePlugins();
-    const auto self = std::find_if(known.begin(), known.end(), [&](const PluginInfo& p) { return p.name == pluginName(node); });
+    const auto self =
+        std::find_if(known.begin(), known.end(), [&](const PluginInfo& p) { return p.name == pluginName(node); });
     for (const JsonNode& nested : nestedPlugins(node, self->parameters))
         if (!contains(emitterPlugins(), pluginName(nested))) bsdf = nested;
     const Pbrt4Materials::Use use =
-        bsdf ? materials_.use(*bsdf, pluginName(*bsdf) == "ref" ? bsdf->at("id").string() : node.key(), parametrization) : materials_.plain(emits ? 0 : 0.5);
+        bsdf ? materials_.use(*bsdf, pluginName(*bsdf) == "ref" ? bsdf->at("id").string() : node.key(), parametrization)
+             : materials_.plain(emits ? 0 : 0.5);
     world_ += fmt::format("AttributeBegin\nNamedMaterial \"{}\"\n", use.material);
     if (emits) {
         const auto& area = std::get<AreaEmitter>(scene_.emitters[shape.emitter]);
@@ -199,21 +213,26 @@ std::string Exporter::environment(const JsonNode& node, const EnvmapEmitter& emi
     const Image picture = assets_.files.readImage(node.at("filename"), false);
     // As many texels as the picture has around its equator.
     const int size = std::clamp(picture.width == picture.height ? picture.width : picture.width * 5 / 8, 16, 8192);
-    return fmt::format("LightSource \"infinite\" \"string filename\" \"{}\"\n", assets_.image(octahedralFromMap(*emitter.map, size), "environment"));
+    return fmt::format("LightSource \"infinite\" \"string filename\" \"{}\"\n",
+                       assets_.image(octahedralFromMap(*emitter.map, size), "environment"));
 }
 
 void Exporter::light(const JsonNode& node) {
     const Emitter emitter = readEmitter(node, assets_.files);
     if (const auto* point = std::get_if<PointEmitter>(&emitter)) {
-        world_ += fmt::format("LightSource \"point\" \"point3 from\" {}{}\n", numbers(Vec3d(point->position)), colour("I", point->intensity));
+        world_ += fmt::format("LightSource \"point\" \"point3 from\" {}{}\n", numbers(Vec3d(point->position)),
+                              colour("I", point->intensity));
     } else if (const auto* spot = std::get_if<SpotEmitter>(&emitter)) {
         const double cone = spot->cutoff * 180 / kPi, beam = spot->beam * 180 / kPi;
         if (cone > beam) leaveOut(node, "the linear edge of \"spot\", written as a smooth one,");
-        world_ += fmt::format("LightSource \"spot\" \"point3 from\" {} \"point3 to\" {} \"float coneangle\" {} \"float conedeltaangle\" {}{}\n",
-                              numbers(Vec3d(spot->position)), numbers(Vec3d(spot->position) + Vec3d(spot->frame.n)), cone, cone - beam,
-                              colour("I", spot->intensity));
+        world_ += fmt::format(
+            "LightSource \"spot\" \"point3 from\" {} \"point3 to\" {} \"float coneangle\" {} \"float conedeltaangle\" "
+            "{}{}\n",
+            numbers(Vec3d(spot->position)), numbers(Vec3d(spot->position) + Vec3d(spot->frame.n)), cone, cone - beam,
+            colour("I", spot->intensity));
     } else if (const auto* sun = std::get_if<DirectionalEmitter>(&emitter)) {
-        world_ += fmt::format("LightSource \"distant\" \"point3 from\" {} \"point3 to\" [ 0 0 0 ]{}\n", numbers(Vec3d(sun->position)), colour("L", sun->irradiance));
+        world_ += fmt::format("LightSource \"distant\" \"point3 from\" {} \"point3 to\" [ 0 0 0 ]{}\n",
+                              numbers(Vec3d(sun->position)), colour("L", sun->irradiance));
     } else if (const auto* constant = std::get_if<ConstantEmitter>(&emitter)) {
         world_ += fmt::format("LightSource \"infinite\"{}\n", colour("L", constant->emitted));
     } else if (const auto* map = std::get_if<EnvmapEmitter>(&emitter)) {
@@ -230,14 +249,21 @@ std::vector<std::string> Exporter::run() {
     std::string head = fmt::format("{}\nIntegrator \"volpath\" \"integer maxdepth\" {}\n", kFormat.mark, kLongestPath);
     for (const JsonNode& node : entries) {
         const std::string& type = pluginName(node);
-        if (noteIfUnused(node, assets_.files)) leaveOut(node, inQuotes(type));
-        else if (contains(scenePlugins(PluginKind::Sensors), type)) head += sensor(node);
-        else if (contains(shapePlugins(), type)) shape(node);
-        else if (contains(emitterPlugins(), type)) light(node);
-        else if (!contains(scenePlugins(PluginKind::Bsdfs), type) && !contains(scenePlugins(PluginKind::Textures), type)) leaveOut(node, inQuotes(type));
+        if (noteIfUnused(node, assets_.files))
+            leaveOut(node, inQuotes(type));
+        else if (contains(scenePlugins(PluginKind::Sensors), type))
+            head += sensor(node);
+        else if (contains(shapePlugins(), type))
+            shape(node);
+        else if (contains(emitterPlugins(), type))
+            light(node);
+        else if (!contains(scenePlugins(PluginKind::Bsdfs), type) &&
+                 !contains(scenePlugins(PluginKind::Textures), type))
+            leaveOut(node, inQuotes(type));
     }
     if (materials_.countTwosided() > 0)
-        leftOut_.push_back(fmt::format("black backs of {} BSDFs, which reflect on both sides in pbrt", materials_.countTwosided()));
+        leftOut_.push_back(
+            fmt::format("black backs of {} BSDFs, which reflect on both sides in pbrt", materials_.countTwosided()));
     folder_.writeScene(head + "WorldBegin\n" + materials_.text() + world_);
     folder_.commit();
     return leftOut_;

@@ -35,7 +35,8 @@ bool Pbrt4Materials::isTextured(const JsonNode& bsdf) const {
     for (const auto& [key, member] : node.members())
         if (isPlugin(member)) {
             const JsonNode inside = resolve_(member);
-            if (pluginName(inside) == "bitmap" || pluginName(inside) == "checkerboard" || isTextured(inside)) return true;
+            if (pluginName(inside) == "bitmap" || pluginName(inside) == "checkerboard" || isTextured(inside))
+                return true;
         }
     return false;
 }
@@ -45,7 +46,8 @@ Pbrt4Materials::Use Pbrt4Materials::plain(double reflectance) {
                reflectance > 0 ? "default" : "black", pbrt::Parametrization::Same);
 }
 
-Pbrt4Materials::Use Pbrt4Materials::use(const JsonNode& bsdf, const std::string& name, pbrt::Parametrization parametrization) {
+Pbrt4Materials::Use Pbrt4Materials::use(const JsonNode& bsdf, const std::string& name,
+                                        pbrt::Parametrization parametrization) {
     const JsonNode node = resolve_(bsdf);
     parametrization_ = parametrization;
     backMatters_ = true;
@@ -80,7 +82,8 @@ std::string Pbrt4Materials::directive(const JsonNode& bsdf) {
         backMatters_ = false;
         return directive(resolve_(sides.at(0)));
     }
-    const bool isClear = type == "dielectric" || type == "roughdielectric" || type == "thindielectric" || type == "null";
+    const bool isClear =
+        type == "dielectric" || type == "roughdielectric" || type == "thindielectric" || type == "null";
     if (!isClear && backMatters_) ++twosided_;
     backMatters_ = false;
     if (type == "null") return "\"interface\"";
@@ -97,8 +100,9 @@ std::string Pbrt4Materials::directive(const JsonNode& bsdf) {
         leaveOut_(bsdf, fmt::format("{}, written as \"coateddiffuse\",", inQuotes(type)));
         needsOne(bsdf, "specular_reflectance");
         // As thin as can be: pbrt's coat absorbs.
-        return "\"coateddiffuse\"" + value(bsdf, "diffuse_reflectance", "reflectance", false, 0.5) + index(bsdf, "polypropylene") +
-               (type == "roughplastic" ? roughness(bsdf) : " \"float roughness\" 0") + " \"float thickness\" 1e-06";
+        return "\"coateddiffuse\"" + value(bsdf, "diffuse_reflectance", "reflectance", false, 0.5) +
+               index(bsdf, "polypropylene") + (type == "roughplastic" ? roughness(bsdf) : " \"float roughness\" 0") +
+               " \"float thickness\" 1e-06";
     }
     const auto nested = nestedPlugins(bsdf, {});
     for (const JsonNode& inside : nested) {
@@ -127,29 +131,36 @@ std::string Pbrt4Materials::index(const JsonNode& bsdf, const char* otherwise) {
 
 std::string Pbrt4Materials::roughness(const JsonNode& bsdf) {
     const auto distribution = bsdf.find("distribution");
-    if (!distribution || distribution->string() != "ggx") leaveOut_(bsdf, fmt::format("Beckmann's distribution of {}, written as GGX,", inQuotes(pluginName(bsdf))));
+    if (!distribution || distribution->string() != "ggx")
+        leaveOut_(bsdf, fmt::format("Beckmann's distribution of {}, written as GGX,", inQuotes(pluginName(bsdf))));
     if (bsdf.find("alpha_u"))
-        return value(bsdf, "alpha_u", "uroughness", true, 0.1) + value(bsdf, "alpha_v", "vroughness", true, 0.1) + " \"bool remaproughness\" false";
+        return value(bsdf, "alpha_u", "uroughness", true, 0.1) + value(bsdf, "alpha_v", "vroughness", true, 0.1) +
+               " \"bool remaproughness\" false";
     return value(bsdf, "alpha", "roughness", true, 0.1) + " \"bool remaproughness\" false";
 }
 
 std::string Pbrt4Materials::metal(const JsonNode& bsdf) {
-    const auto named = bsdf.find("material"), eta = bsdf.find("eta"), k = bsdf.find("k"), factor = bsdf.find("specular_reflectance");
+    const auto named = bsdf.find("material"), eta = bsdf.find("eta"), k = bsdf.find("k"),
+               factor = bsdf.find("specular_reflectance");
     const std::string name = named ? named->string() : eta || k ? "" : "none";
     if (name == "none" && !eta && !k) return value(bsdf, "specular_reflectance", "reflectance", false, 1);
     if (factor) needsOne(bsdf, "specular_reflectance");
-    if (isMetalOfPbrt(name)) return fmt::format(" \"spectrum eta\" \"metal-{0}-eta\" \"spectrum k\" \"metal-{0}-k\"", name);
+    if (isMetalOfPbrt(name))
+        return fmt::format(" \"spectrum eta\" \"metal-{0}-eta\" \"spectrum k\" \"metal-{0}-k\"", name);
     const Metal* metal = findMetal(name.empty() ? "none" : name);
     const auto constant = [&](const char* parameter, const std::optional<JsonNode>& given, const Spectrum& otherwise) {
-        if (given && isTexture(resolve_(*given))) leaveOut_(*given, fmt::format("the texture of {}", inQuotes(parameter)));
-        else if (given) return fmt::format(" \"rgb {}\" {}", parameter, rgb(parseSpectrum(*given)));
+        if (given && isTexture(resolve_(*given)))
+            leaveOut_(*given, fmt::format("the texture of {}", inQuotes(parameter)));
+        else if (given)
+            return fmt::format(" \"rgb {}\" {}", parameter, rgb(parseSpectrum(*given)));
         return fmt::format(" \"rgb {}\" {}", parameter, rgb(otherwise));
     };
     return constant("eta", eta, metal->eta) + constant("k", k, metal->k);
 }
 
 /// A parameter as pbrt's of another name: a constant or a texture.
-std::string Pbrt4Materials::value(const JsonNode& owner, const char* parameter, const char* name, bool isNumber, const Json& otherwise) {
+std::string Pbrt4Materials::value(const JsonNode& owner, const char* parameter, const char* name, bool isNumber,
+                                  const Json& otherwise) {
     const auto found = owner.find(parameter);
     const JsonNode given = found ? resolve_(*found) : JsonNode(otherwise);
     if (isTexture(given)) {
@@ -187,7 +198,8 @@ std::string Pbrt4Materials::texture(const JsonNode& node, bool isNumber) {
         const Spectrum factor = scale ? parseSpectrum(*scale) : Spectrum(1.0);
         const bool isGrey = factor.x == factor.y && factor.y == factor.z;
         const auto baked = isGrey ? std::nullopt : assets_.bakedPicture(node);
-        parameters = fmt::format(" \"string filename\" \"{}\"", baked ? baked->file : assets_.copy(node.at("filename"), "textures"));
+        parameters = fmt::format(" \"string filename\" \"{}\"",
+                                 baked ? baked->file : assets_.copy(node.at("filename"), "textures"));
         if (!baked && factor.x != 1) parameters += fmt::format(" \"float scale\" {}", factor.x);
         if (!baked && invert && invert->boolean()) parameters += " \"bool invert\" true";
         if (!baked && raw && raw->boolean()) parameters += " \"string encoding\" \"linear\"";
@@ -201,10 +213,14 @@ std::string Pbrt4Materials::texture(const JsonNode& node, bool isNumber) {
         leaveOut_(node, "texture coordinates that are turned against the surface's");
         m = Matrix4();
     }
-    for (const auto& [name, number, otherwise] : {std::tuple{"uscale", m[0][0], 1.0}, {"vscale", m[1][1], 1.0}, {"udelta", m[3][0], 0.0}, {"vdelta", m[3][1], 0.0}})
+    for (const auto& [name, number, otherwise] : {std::tuple{"uscale", m[0][0], 1.0},
+                                                  {"vscale", m[1][1], 1.0},
+                                                  {"udelta", m[3][0], 0.0},
+                                                  {"vdelta", m[3][1], 0.0}})
         if (number != otherwise) parameters += fmt::format(" \"float {}\" {}", name, number);
     const std::string unique = textureNames_.make(node.key().empty() ? "texture" : node.key());
-    text_ += fmt::format("Texture \"{}\" \"{}\" \"{}\"{}\n", unique, isNumber ? "float" : "spectrum", type == "bitmap" ? "imagemap" : type, parameters);
+    text_ += fmt::format("Texture \"{}\" \"{}\" \"{}\"{}\n", unique, isNumber ? "float" : "spectrum",
+                         type == "bitmap" ? "imagemap" : type, parameters);
     return made_[key] = unique;
 }
 

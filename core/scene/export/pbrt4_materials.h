@@ -36,7 +36,8 @@ public:
 private:
     std::string material(const JsonNode& bsdf, const std::string& name);
     std::string directive(const JsonNode& bsdf);
-    std::string value(const JsonNode& owner, const char* parameter, const char* name, bool isNumber, const Json& otherwise);
+    std::string value(const JsonNode& owner, const char* parameter, const char* name, bool isNumber,
+                      const Json& otherwise);
     std::string texture(const JsonNode& node, bool isNumber);
     std::string roughness(const JsonNode& bsdf);
     std::string index(const JsonNode& bsdf, const char* otherwise);

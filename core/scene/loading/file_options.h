@@ -11,8 +11,8 @@ using Definitions = std::map<std::string, std::string>;
 
 struct SceneFileOptions {
     Definitions definitions;
-    /// BSDFs and textures that are not known become magenta, such shapes, emitters and media are left out. The dictionary
-    /// says so in "$substitutions", and so do the results of all its images.
+    /// BSDFs and textures that are not known become magenta, such shapes, emitters and media are left out. The
+    /// dictionary says so in "$substitutions", and so do the results of all its images.
     bool lenient = false;
 };
 

@@ -46,14 +46,7 @@ UvTransform uvTransform(const JsonNode& node) {
 
 Texture readBitmap(const JsonNode& node, LoadContext& context) {
     const auto p = parsePlugin<BitmapParameters>(node);
-    Image image = context.readImage(node.at("filename"), p.raw);
-    const Rgb factor(p.scale);
-    if (factor != Rgb(1.0f) || p.invert)
-        for (Rgb& pixel : image.pixels) {
-            pixel *= factor;
-            for (int c = 0; p.invert && c < 3; ++c) pixel[c] = std::max(0.0f, 1 - pixel[c]);
-        }
-    return BitmapTexture(p, uvTransform(p.toUv), std::move(image));
+    return BitmapTexture(p, uvTransform(p.toUv), readPicture(node, context));
 }
 
 Texture readCheckerboard(const JsonNode& node, LoadContext&) {
@@ -77,6 +70,18 @@ const PluginTable<Texture(const JsonNode&, LoadContext&)>& table() {
 
 std::vector<PluginInfo> texturePlugins() {
     return table().infos();
+}
+
+Image readPicture(const JsonNode& node, LoadContext& context) {
+    const auto p = parsePlugin<BitmapParameters>(node);
+    Image image = context.readImage(node.at("filename"), p.raw);
+    const Rgb factor(p.scale);
+    if (factor == Rgb(1.0f) && !p.invert) return image;
+    for (Rgb& pixel : image.pixels) {
+        pixel *= factor;
+        for (int c = 0; p.invert && c < 3; ++c) pixel[c] = std::max(0.0f, 1 - pixel[c]);
+    }
+    return image;
 }
 
 Texture readTexture(const JsonNode& node, LoadContext& context) {

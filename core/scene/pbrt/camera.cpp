@@ -17,7 +17,8 @@ struct FilmArea {
 FilmArea sizeOf(const Single& film) {
     const FilmArea size{film.parameters.integer("xresolution", 1280), film.parameters.integer("yresolution", 720)};
     if (size.width < 1 || size.height < 1)
-        refuse(film.parameters.place(), fmt::format("a film has at least one pixel, not {} x {}", size.width, size.height));
+        refuse(film.parameters.place(),
+               fmt::format("a film has at least one pixel, not {} x {}", size.width, size.height));
     return size;
 }
 
@@ -27,12 +28,14 @@ std::array<double, 4> cropOf(const Parameters& p, const FilmArea& size) {
     const Parameter *bounds = p.find("pixelbounds", {"integer"}), *window = p.find("cropwindow", {"float"});
     const Parameter* given = window ? window : bounds;  // as in pbrt
     if (!given) return crop;
-    if (given->numbers.size() != 4) refuse(given->place, fmt::format("{} is four numbers: x0 x1 y0 y1", inQuotes(given->name)));
+    if (given->numbers.size() != 4)
+        refuse(given->place, fmt::format("{} is four numbers: x0 x1 y0 y1", inQuotes(given->name)));
     for (size_t i = 0; i < 4; ++i) {
         const double edge = i < 2 ? size.width : size.height;
         crop[i] = std::clamp(window ? std::ceil(given->numbers[i] * edge) : given->numbers[i], 0.0, edge);
     }
-    if (!(crop[0] < crop[1] && crop[2] < crop[3])) refuse(given->place, fmt::format("{} leaves no pixels", inQuotes(given->name)));
+    if (!(crop[0] < crop[1] && crop[2] < crop[3]))
+        refuse(given->place, fmt::format("{} leaves no pixels", inQuotes(given->name)));
     return crop;
 }
 
@@ -67,7 +70,8 @@ Json readFilm(const Single& film, const Single& filter) {
     const Parameters& p = film.parameters;
     const FilmArea size = sizeOf(film);
     // Other films than "rgb" are taken for one, with a warning.
-    Json result = {{"type", film.type == "rgb" ? "hdrfilm" : film.type}, {"width", size.width}, {"height", size.height}};
+    Json result = {
+        {"type", film.type == "rgb" ? "hdrfilm" : film.type}, {"width", size.width}, {"height", size.height}};
     const auto [left, right, top, bottom] = cropOf(p, size);
     if (left > 0 || top > 0 || right < size.width || bottom < size.height) {
         result["crop_offset_x"] = int(left);
@@ -80,7 +84,8 @@ Json readFilm(const Single& film, const Single& filter) {
     if (const double iso = p.number("iso", 100); iso != 100) result["iso"] = iso;
     if (const double kelvin = p.number("whitebalance", 0); kelvin != 0) result["whitebalance"] = kelvin;
     if (const std::string sensor = p.text("sensor", "cie1931"); sensor != "cie1931") result["sensor"] = sensor;
-    if (const double most = p.number("maxcomponentvalue", INFINITY); std::isfinite(most)) result["maxcomponentvalue"] = most;
+    if (const double most = p.number("maxcomponentvalue", INFINITY); std::isfinite(most))
+        result["maxcomponentvalue"] = most;
     p.ignore({"filename", "diagonal", "savefp16", "coordinatesystem", "nbuckets", "lambdamin", "lambdamax"});
     p.finish();
     return result;
@@ -98,8 +103,9 @@ std::array<double, 4> windowOf(const Parameters& p, const FilmArea& size) {
     const double width = window[1] - window[0], height = window[3] - window[2];
     if (!(width > 0 && height > 0)) refuse(p.place(), "the window of the camera is empty");
     if (std::abs(width * size.height - height * size.width) > 1e-4 * width * size.height)
-        refuse(p.place(), fmt::format("the window of the camera is {:g} x {:g}, the film {} x {}: pixels that are not square are not supported", width,
-                                      height, size.width, size.height));
+        refuse(p.place(), fmt::format("the window of the camera is {:g} x {:g}, the film {} x {}: pixels that are not "
+                                      "square are not supported",
+                                      width, height, size.width, size.height));
     return window;
 }
 
@@ -118,8 +124,10 @@ Json readSensor(const Single& camera, const Matrix4& toWorld, const Single& film
         sensor["fov"] = 2 * std::atan(std::tan(fov * kPi / 360) * wide / 2) * 180 / kPi;
         sensor["fov_axis"] = "x";
     }
-    if (const double x = (window[0] + window[1]) / (2 * wide); std::abs(x) > 1e-9) sensor["principal_point_offset_x"] = x;
-    if (const double y = -(window[2] + window[3]) / (2 * high); std::abs(y) > 1e-9) sensor["principal_point_offset_y"] = y;
+    if (const double x = (window[0] + window[1]) / (2 * wide); std::abs(x) > 1e-9)
+        sensor["principal_point_offset_x"] = x;
+    if (const double y = -(window[2] + window[3]) / (2 * high); std::abs(y) > 1e-9)
+        sensor["principal_point_offset_y"] = y;
     // Here x is to the left. A camera must not scale; seen through a pinhole a scale makes no difference.
     Matrix4 mirror;
     mirror.setScale(Vec3d(-1, 1, 1));

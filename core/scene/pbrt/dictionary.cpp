@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-
 #include "core/config/json_text.h"
 #include "core/config/suggest.h"
 
@@ -26,13 +25,14 @@ void Dictionary::note(const std::string& entry, const std::string& key, const Pl
     places_.emplace_back('/' + escapePointerStep(entry) + '/' + escapePointerStep(key), place.text());
 }
 
-void Dictionary::unknown(std::string_view kind, const std::string& type, const std::vector<std::string>& known, const Place& place,
-                         std::string_view instead) {
+void Dictionary::unknown(std::string_view kind, const std::string& type, const std::vector<std::string>& known,
+                         const Place& place, std::string_view instead) {
     if (!lenient) unknownName(kind, type, known, place.text());
     substitute(fmt::format("the {} {} at {} is not known: {}", kind, inQuotes(type), place.text(), instead));
 }
 
-void Dictionary::unsupported(const std::string& what, const Place& place, std::string_view hint, std::string_view instead) {
+void Dictionary::unsupported(const std::string& what, const Place& place, std::string_view hint,
+                             std::string_view instead) {
     if (!lenient) refuse(place, what + " is not supported", hint);
     substitute(fmt::format("{} at {} is not supported: {}", what, place.text(), instead));
 }

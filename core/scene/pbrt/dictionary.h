@@ -13,7 +13,8 @@ namespace ulam::pbrt {
 
 class Dictionary {
 public:
-    Dictionary(std::filesystem::path sceneFolder, bool isLenient) : folder(std::move(sceneFolder)), lenient(isLenient) {}
+    Dictionary(std::filesystem::path sceneFolder, bool isLenient)
+        : folder(std::move(sceneFolder)), lenient(isLenient) {}
 
     /// A free name for an entry: the wanted one, or one with a number.
     std::string name(const std::string& wanted);
@@ -25,8 +26,8 @@ public:
     void substitute(std::string text) { substitutions_.push_back(std::move(text)); }
     /// A plugin of a type that is not known, or a feature that is not supported: fails, or where the reader is lenient
     /// says what takes its place.
-    void unknown(std::string_view kind, const std::string& type, const std::vector<std::string>& known, const Place& place,
-                 std::string_view instead);
+    void unknown(std::string_view kind, const std::string& type, const std::vector<std::string>& known,
+                 const Place& place, std::string_view instead);
     void unsupported(const std::string& what, const Place& place, std::string_view hint, std::string_view instead);
 
     JsonDocument document(std::string file, const Place& whole);

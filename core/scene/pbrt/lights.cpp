@@ -37,15 +37,19 @@ Json readSpot(const Parameters& p, const Matrix4& toWorld, Dictionary& dictionar
     const Vec3d from = p.point("from", Vec3d(0.0)), to = p.point("to", {0, 0, 1});
     const double cone = p.number("coneangle", 30), delta = p.number("conedeltaangle", 5), full = cone - delta;
     if (!(cone > 0 && cone <= 180 && delta >= 0 && full >= 0))
-        refuse(p.place(), fmt::format("coneangle of {} is from 0 to 180 degrees, and conedeltaangle from 0 to coneangle", p.owner()));
+        refuse(
+            p.place(),
+            fmt::format("coneangle of {} is from 0 to 180 degrees, and conedeltaangle from 0 to coneangle", p.owner()));
     const double end = std::cos(cone * kDegree), start = std::cos(full * kDegree);
     const Spectrum colour = intensity(p, "I", 2 * kPi * ((1 - start) + (start - end) / 2), dictionary);
     if (delta > 0)
-        dictionary.substitute(fmt::format("the {} at {} fades linearly with the angle between its inner and outer cone, not smoothly with the cosine",
-                                          p.owner(), p.place().text()));
+        dictionary.substitute(fmt::format(
+            "the {} at {} fades linearly with the angle between its inner and outer cone, not smoothly with the cosine",
+            p.owner(), p.place().text()));
     // 0 would stand for three quarters of the cone.
     return {{"type", "spot"},
-            {"to_world", {{{"type", "lookat"}, {"origin", point(moved(toWorld, from))}, {"target", point(moved(toWorld, to))}}}},
+            {"to_world",
+             {{{"type", "lookat"}, {"origin", point(moved(toWorld, from))}, {"target", point(moved(toWorld, to))}}}},
             {"intensity", colourJson(colour)},
             {"cutoff_angle", cone},
             {"beam_width", std::max(full, 1e-6)}};
@@ -55,7 +59,8 @@ Json readDistant(const Parameters& p, const Matrix4& toWorld, Dictionary& dictio
     const Vec3d travel = p.point("to", {0, 0, 1}) - p.point("from", Vec3d(0.0));
     Vec3d direction;
     toWorld.multDirMatrix(travel, direction);
-    if (!(direction.length() > 0)) refuse(p.place(), fmt::format("\"from\" and \"to\" of {} are the same point", p.owner()));
+    if (!(direction.length() > 0))
+        refuse(p.place(), fmt::format("\"from\" and \"to\" of {} are the same point", p.owner()));
     const double scale = p.number("scale", 1), illuminance = p.number("illuminance", -1);
     return {{"type", "directional"},
             {"direction", point(direction)},
@@ -64,14 +69,18 @@ Json readDistant(const Parameters& p, const Matrix4& toWorld, Dictionary& dictio
 
 Json readInfinite(const Parameters& p, const Matrix4& toWorld, Dictionary& dictionary) {
     const double scale = p.number("scale", 1), illuminance = p.number("illuminance", -1);
-    if (const Parameter* portal = p.find("portal", {"point3"})) refuse(portal->place, fmt::format("\"portal\" of {} is not supported", p.owner()));
+    if (const Parameter* portal = p.find("portal", {"point3"}))
+        refuse(portal->place, fmt::format("\"portal\" of {} is not supported", p.owner()));
     const Parameter* filename = p.find("filename", {"string"});
     const Spectrum colour = light(p, "L", dictionary);
     if (!filename)
-        return {{"type", "constant"}, {"radiance", colourJson(colour * (illuminance > 0 ? scale * illuminance / kPi : scale))}};
-    if (const Parameter* given = p.find("L", {"rgb", "spectrum", "blackbody"})) refuse(given->place, fmt::format("{} has either \"L\" or \"filename\"", p.owner()));
+        return {{"type", "constant"},
+                {"radiance", colourJson(colour * (illuminance > 0 ? scale * illuminance / kPi : scale))}};
+    if (const Parameter* given = p.find("L", {"rgb", "spectrum", "blackbody"}))
+        refuse(given->place, fmt::format("{} has either \"L\" or \"filename\"", p.owner()));
     if (illuminance > 0)
-        refuse(p.find("illuminance", {"float"})->place, fmt::format("\"illuminance\" of {} with a picture is not supported", p.owner()), "give a scale");
+        refuse(p.find("illuminance", {"float"})->place,
+               fmt::format("\"illuminance\" of {} with a picture is not supported", p.owner()), "give a scale");
     Json entry = {{"type", "envmap"}, {"filename", p.text("filename", "")}, {"mapping", "octahedral"}};
     if (scale != 1) entry["scale"] = scale;
     if (toWorld != Matrix4()) {
@@ -86,10 +95,14 @@ Json readInfinite(const Parameters& p, const Matrix4& toWorld, Dictionary& dicti
 
 Json readLight(const std::string& type, const Parameters& p, const Matrix4& toWorld, Dictionary& dictionary) {
     Json entry;
-    if (type == "point") entry = readPoint(p, toWorld, dictionary);
-    else if (type == "spot") entry = readSpot(p, toWorld, dictionary);
-    else if (type == "distant") entry = readDistant(p, toWorld, dictionary);
-    else if (type == "infinite") entry = readInfinite(p, toWorld, dictionary);
+    if (type == "point")
+        entry = readPoint(p, toWorld, dictionary);
+    else if (type == "spot")
+        entry = readSpot(p, toWorld, dictionary);
+    else if (type == "distant")
+        entry = readDistant(p, toWorld, dictionary);
+    else if (type == "infinite")
+        entry = readInfinite(p, toWorld, dictionary);
     else {
         dictionary.unknown("light", type, {"distant", "infinite", "point", "spot"}, p.place(), "it is left out");
         return nullptr;
@@ -107,13 +120,17 @@ Json readAreaLight(const std::string& type, const Parameters& p, const ShapeReco
     if (p.number("power", -1) > 0) {
         const auto area = lightArea(shape);
         if (!area)
-            refuse(p.place(), fmt::format("\"power\" of {}: each triangle of a mesh gets all of it, and these have different areas or are in a file", p.owner()),
+            refuse(p.place(),
+                   fmt::format("\"power\" of {}: each triangle of a mesh gets all of it, and these have different "
+                               "areas or are in a file",
+                               p.owner()),
                    "give \"L\"");
         unit = kPi * *area;
     }
     const Spectrum radiance = intensity(p, "L", unit, dictionary);
     if (p.flag("twosided", false))
-        dictionary.unsupported(fmt::format("\"twosided\" of {}", p.owner()), p.place(), "lights shine from the side of their normals",
+        dictionary.unsupported(fmt::format("\"twosided\" of {}", p.owner()), p.place(),
+                               "lights shine from the side of their normals",
                                "it shines from the side of the normals only");
     if (const Parameter* filename = p.find("filename", {"string"}))
         dictionary.unsupported(fmt::format("\"filename\" of {}", p.owner()), filename->place, {}, "it shines evenly");

@@ -9,6 +9,7 @@ namespace ulam::pbrt {
 Json readLight(const std::string& type, const Parameters& parameters, const Matrix4& toWorld, Dictionary& dictionary);
 
 /// The emitter of a shape; null where it is left out.
-Json readAreaLight(const std::string& type, const Parameters& parameters, const ShapeRecord& shape, Dictionary& dictionary);
+Json readAreaLight(const std::string& type, const Parameters& parameters, const ShapeRecord& shape,
+                   Dictionary& dictionary);
 
 }  // namespace ulam::pbrt

@@ -47,7 +47,8 @@ const Materials::Converted& Materials::convert(size_t index, Parametrization par
     const MaterialDefinition& material = definitions_[index];
     const auto outer = std::tuple(entry_, parametrization_, textured_);
     if (++depth_ > kDeepestMixture)
-        refuse(material.parameters.place(), fmt::format("mixtures are nested deeper than {}, or hold themselves", kDeepestMixture));
+        refuse(material.parameters.place(),
+               fmt::format("mixtures are nested deeper than {}, or hold themselves", kDeepestMixture));
     entry_ = dictionary_.name(material.name.empty() ? "material" : material.name);
     parametrization_ = parametrization;
     textured_ = false;
@@ -64,7 +65,8 @@ const Materials::Converted& Materials::convert(size_t index, Parametrization par
 Json Materials::use(const MaterialUse& use, Parametrization parametrization, const std::optional<Texture>& alpha) {
     const size_t index = indexOf(use);
     if (index == 0 && !alpha) return twosided({{"type", "diffuse"}});
-    Json inside = index == 0 ? twosided({{"type", "diffuse"}}) : Json{{"type", "ref"}, {"id", convert(index, parametrization).entry}};
+    Json inside = index == 0 ? twosided({{"type", "diffuse"}})
+                             : Json{{"type", "ref"}, {"id", convert(index, parametrization).entry}};
     if (!alpha || (alpha->isConstant() && alpha->first.x >= 1)) return inside;
     Json mask = {{"type", "mask"}, {"opacity", textures_.use(*alpha, parametrization)}, {"bsdf", std::move(inside)}};
     const auto [entry, isNew] = masks_.try_emplace(mask.dump());
@@ -93,7 +95,8 @@ Json Materials::value(const Texture& texture) {
 }
 
 void Materials::nearest(const Parameters& p, const std::string& bsdf, const std::string& difference) {
-    dictionary_.substitute(fmt::format("the {} at {} is written as the nearest, {}: {}", p.owner(), p.place().text(), inQuotes(bsdf), difference));
+    dictionary_.substitute(fmt::format("the {} at {} is written as the nearest, {}: {}", p.owner(), p.place().text(),
+                                       inQuotes(bsdf), difference));
 }
 
 Json Materials::magenta() const {
@@ -120,7 +123,8 @@ Json Materials::bsdf(const MaterialDefinition& material) {
         if (material.type != reader.type) continue;
         for (const char* detail : {"displacement", "normalmap"})
             if (const Parameter* given = p.find(detail, {"texture", "string", "float"}))
-                dictionary_.unsupported(fmt::format("{} of {}", inQuotes(detail), p.owner()), given->place, {}, "the surface stays smooth");
+                dictionary_.unsupported(fmt::format("{} of {}", inQuotes(detail), p.owner()), given->place, {},
+                                        "the surface stays smooth");
         return (this->*reader.read)(p);
     }
     dictionary_.unknown("material", material.type, names, p.place(), "magenta takes its place");
@@ -150,13 +154,15 @@ Materials::Roughness Materials::roughness(const Parameters& p, const std::string
             if (!(alpha->first.x >= 0)) refuse(alpha->place, fmt::format("a roughness of {} is below 0", p.owner()));
             if (remapped) alpha->first = Spectrum(std::sqrt(alpha->first.x));
         } else if (remapped) {
-            dictionary_.unsupported(fmt::format("a texture for a roughness of {} that is remapped", p.owner()), p.place(),
-                                    "with \"bool remaproughness\" false it is", "a roughness of 0.5 takes its place");
+            dictionary_.unsupported(fmt::format("a texture for a roughness of {} that is remapped", p.owner()),
+                                    p.place(), "with \"bool remaproughness\" false it is",
+                                    "a roughness of 0.5 takes its place");
             *alpha = {};
             alpha->first = Spectrum(std::sqrt(0.5));
         }
     }
-    result.isSmooth = result.u.isConstant() && result.v.isConstant() && std::max(result.u.first.x, result.v.first.x) < kSmooth;
+    result.isSmooth =
+        result.u.isConstant() && result.v.isConstant() && std::max(result.u.first.x, result.v.first.x) < kSmooth;
     return result;
 }
 
@@ -190,7 +196,8 @@ Json Materials::coatedDiffuse(const Parameters& p) {
     p.ignore({"maxdepth", "nsamples", "twosided"});
     if (!rough.isSmooth) {
         if (!rough.u.isConstant() || !rough.v.isConstant()) {
-            dictionary_.unsupported(fmt::format("a texture for a roughness of {}", p.owner()), p.place(), {}, "a roughness of 0.5 takes its place");
+            dictionary_.unsupported(fmt::format("a texture for a roughness of {}", p.owner()), p.place(), {},
+                                    "a roughness of 0.5 takes its place");
             bsdf["alpha"] = std::sqrt(0.5);
         } else {
             const double u = rough.u.first.x, v = rough.v.first.x;
@@ -210,7 +217,8 @@ Json Materials::metalBsdf(const Parameters& p, const std::string& prefix) {
     if (const Parameter* given = p.find("reflectance", {"rgb", "spectrum", "texture"})) {
         for (const char* other : {"eta", "k"})
             if (p.find(prefix + other, {"rgb", "spectrum"}))
-                refuse(given->place, fmt::format("a metal is its reflectance, or eta and k, not both, in {}", p.owner()));
+                refuse(given->place,
+                       fmt::format("a metal is its reflectance, or eta and k, not both, in {}", p.owner()));
         const Texture reflectance = textures_.colour(p, "reflectance", Spectrum(0.5));
         if (reflectance.isConstant()) {
             // The metal with η = 1 that reflects this at normal incidence.
@@ -237,8 +245,8 @@ Json Materials::conductor(const Parameters& p) {
 }
 
 Json Materials::coatedConductor(const Parameters& p) {
-    p.ignore({"maxdepth", "nsamples", "twosided", "thickness", "albedo", "g", "interface.roughness", "interface.uroughness",
-              "interface.vroughness", "interface.eta"});
+    p.ignore({"maxdepth", "nsamples", "twosided", "thickness", "albedo", "g", "interface.roughness",
+              "interface.uroughness", "interface.vroughness", "interface.eta"});
     Json bsdf = metalBsdf(p, "conductor.");
     nearest(p, bsdf["type"], "the metal without its coat");
     return twosided(std::move(bsdf));
@@ -260,7 +268,8 @@ Json Materials::thinDielectric(const Parameters& p) {
 
 Json Materials::mix(const Parameters& p) {
     const Parameter& names = p.needed("materials", {"string"});
-    if (names.texts.size() != 2) refuse(names.place, fmt::format("{} mixes two materials, found {}", p.owner(), names.texts.size()));
+    if (names.texts.size() != 2)
+        refuse(names.place, fmt::format("{} mixes two materials, found {}", p.owner(), names.texts.size()));
     const Texture amount = textures_.number(p, "amount", 0.5);
     if (!contains(scenePlugins(PluginKind::Bsdfs), "blendbsdf")) {
         dictionary_.unsupported(p.owner(), p.place(), {}, "magenta takes its place");

@@ -18,13 +18,12 @@ struct Type {
     size_t group;  ///< numbers of one value; 0: any
 };
 
-constexpr std::array kTypes{Type{"float", Holds::Numbers, 1},   Type{"integer", Holds::Numbers, 1},
-                            Type{"bool", Holds::Flags, 1},      Type{"string", Holds::Texts, 1},
-                            Type{"texture", Holds::Texts, 1},   Type{"point2", Holds::Numbers, 2},
-                            Type{"vector2", Holds::Numbers, 2}, Type{"point3", Holds::Numbers, 3},
-                            Type{"vector3", Holds::Numbers, 3}, Type{"normal", Holds::Numbers, 3},
-                            Type{"rgb", Holds::Numbers, 3},     Type{"blackbody", Holds::Numbers, 1},
-                            Type{"spectrum", Holds::NumbersOrTexts, 0}};
+constexpr std::array kTypes{
+    Type{"float", Holds::Numbers, 1},          Type{"integer", Holds::Numbers, 1}, Type{"bool", Holds::Flags, 1},
+    Type{"string", Holds::Texts, 1},           Type{"texture", Holds::Texts, 1},   Type{"point2", Holds::Numbers, 2},
+    Type{"vector2", Holds::Numbers, 2},        Type{"point3", Holds::Numbers, 3},  Type{"vector3", Holds::Numbers, 3},
+    Type{"normal", Holds::Numbers, 3},         Type{"rgb", Holds::Numbers, 3},     Type{"blackbody", Holds::Numbers, 1},
+    Type{"spectrum", Holds::NumbersOrTexts, 0}};
 
 const Type& typeOf(const Parameter& parameter) {
     std::vector<std::string> names;
@@ -86,8 +85,8 @@ Parameter readParameter(Tokens& tokens) {
         addValue(tokens, token, type, parameter);
     }
     if (type.group > 1 && parameter.numbers.size() % type.group != 0)
-        refuse(parameter.place, fmt::format("{} is of type {}, {} numbers each, but has {}", inQuotes(parameter.name), type.name,
-                                            type.group, parameter.numbers.size()));
+        refuse(parameter.place, fmt::format("{} is of type {}, {} numbers each, but has {}", inQuotes(parameter.name),
+                                            type.name, type.group, parameter.numbers.size()));
     if (!parameter.numbers.empty() && !parameter.texts.empty())
         refuse(parameter.place, fmt::format("{} mixes numbers and texts", inQuotes(parameter.name)));
     return parameter;
@@ -102,7 +101,8 @@ Parameters Parameters::read(Tokens& tokens, std::string owner, const Place& plac
     while (tokens.peek().kind == Token::Kind::Text) {
         Parameter parameter = readParameter(tokens);
         for (const Parameter& other : result.all_)
-            if (other.name == parameter.name) refuse(parameter.place, fmt::format("{} is given twice", inQuotes(parameter.name)));
+            if (other.name == parameter.name)
+                refuse(parameter.place, fmt::format("{} is given twice", inQuotes(parameter.name)));
         result.all_.push_back(std::move(parameter));
     }
     return result;
@@ -128,7 +128,8 @@ const Parameter* Parameters::find(std::string_view name, std::initializer_list<s
         if (std::find(types.begin(), types.end(), parameter.type) != types.end()) return &parameter;
         std::string expected;
         for (const std::string_view type : types) expected += (expected.empty() ? "" : " or ") + std::string(type);
-        refuse(parameter.place, fmt::format("{} of {} is of type {}, found {}", inQuotes(name), owner_, expected, parameter.type));
+        refuse(parameter.place,
+               fmt::format("{} of {} is of type {}, found {}", inQuotes(name), owner_, expected, parameter.type));
     }
     return nullptr;
 }
@@ -141,7 +142,8 @@ const Parameter& Parameters::needed(std::string_view name, std::initializer_list
 
 const Parameter* Parameters::single(std::string_view name, std::string_view type) const {
     const Parameter* parameter = find(name, {type});
-    if (parameter && std::max({parameter->numbers.size() / typeOf(*parameter).group, parameter->texts.size(), parameter->flags.size()}) != 1)
+    if (parameter && std::max({parameter->numbers.size() / typeOf(*parameter).group, parameter->texts.size(),
+                               parameter->flags.size()}) != 1)
         refuse(parameter->place, fmt::format("{} of {} is one value", inQuotes(name), owner_));
     return parameter;
 }

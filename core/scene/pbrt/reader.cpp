@@ -7,8 +7,8 @@
 #include "core/base/file.h"
 #include "core/config/suggest.h"
 #include "core/scene/loading/context.h"
-#include "core/scene/loading/plugin_table.h"
 #include "core/scene/pbrt/camera.h"
+#include "core/scene/pbrt/instances.h"
 #include "core/scene/pbrt/lights.h"
 #include "core/scene/pbrt/pbrt.h"
 #include "core/scene/pbrt/state.h"
@@ -18,12 +18,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kMostCopies = 2e6;      // shapes of all instances
-constexpr double kMostCopiedNumbers = 3e8;  // coordinates of their meshes
-
 class Reader {
 public:
-    Reader(const fs::path& folder, bool lenient) : dictionary_(folder, lenient), textures_(dictionary_), materials_(dictionary_, textures_) {}
+    Reader(const fs::path& folder, bool lenient)
+        : dictionary_(folder, lenient),
+          textures_(dictionary_),
+          materials_(dictionary_, textures_),
+          instances_(dictionary_, materials_) {}
 
     JsonDocument read(const fs::path& file) {
         readFile(file, file.string(), 0);
@@ -35,17 +36,6 @@ public:
     }
 
 private:
-    struct Object {
-        std::vector<ShapeRecord> shapes;
-        std::string entry;  ///< of the shapegroup, once it is there
-        Place place;
-    };
-    struct Instance {
-        std::string object;
-        Matrix4 toWorld;
-        Place place;
-    };
-
     void readFile(const fs::path& path, const std::string& name, int depth);
     void directive(Tokens& tokens, const Token& token, int depth);
     bool readWorldDirective(const std::string& name, Tokens& tokens, const Place& place);
@@ -64,11 +54,9 @@ private:
     void light(Tokens& tokens, const Place& place);
     void areaLight(Tokens& tokens, const Place& place);
     void objectBegin(Tokens& tokens, const Place& place);
-    void objectEnd(const Place& place);
+    void objectEnd(Tokens& tokens, const Place& place);
     void objectInstance(Tokens& tokens, const Place& place);
     void finish();
-    void finishInstances();
-    void add(const ShapeRecord& shape, const Matrix4& moved, const Place& place);
 
     Dictionary dictionary_;
     Textures textures_;
@@ -81,17 +69,17 @@ private:
     Matrix4 cameraToWorld_;
     std::vector<ShapeRecord> shapes_;
     std::vector<std::pair<Json, Place>> lights_;
-    std::map<std::string, Object> objects_;
-    std::string object_;  ///< the one being defined
-    std::vector<Instance> instances_;
+    Instances instances_;
 };
 
 void Reader::readFile(const fs::path& path, const std::string& name, int depth) {
     const std::string text = ulam::readFile(path, kMaxJsonBytes);
     bytes_ += text.size();
     const SourceFile& source = files_.emplace_back(name, text);
-    if (bytes_ > kMaxPbrtBytes) refuse({&source, 0}, fmt::format("all files that the scene includes hold more than {} bytes", kMaxPbrtBytes));
-    if (const size_t zero = text.find('\0'); zero != text.npos) refuse({&source, zero}, "expected text, found a zero byte");
+    if (bytes_ > kMaxPbrtBytes)
+        refuse({&source, 0}, fmt::format("all files that the scene includes hold more than {} bytes", kMaxPbrtBytes));
+    if (const size_t zero = text.find('\0'); zero != text.npos)
+        refuse({&source, zero}, "expected text, found a zero byte");
     Tokens tokens(text, source);
     for (Token token = tokens.next(); token.kind != Token::Kind::End; token = tokens.next()) {
         if (token.kind != Token::Kind::Word) tokens.unexpected(token, "a directive");
@@ -110,13 +98,19 @@ void Reader::directive(Tokens& tokens, const Token& token, int depth) {
         states_.pop("Import", place);
         return;
     }
-    if (states_.read(name, tokens, place) || readSetting(name, tokens, place) || readWorldDirective(name, tokens, place)) return;
-    std::vector<std::string> known{"AreaLightSource", "Attribute",   "ColorSpace", "Import",      "Include",     "LightSource", "MakeNamedMaterial",
-                                   "Material",        "MediumInterface", "NamedMaterial", "ObjectBegin", "ObjectEnd", "ObjectInstance",
-                                   "Option",          "Shape",       "Texture",    "WorldBegin",  "Accelerator", "Camera",      "Film",
-                                   "Integrator",      "PixelFilter", "Sampler"};
+    if (states_.read(name, tokens, place) || readSetting(name, tokens, place) ||
+        readWorldDirective(name, tokens, place))
+        return;
+    std::vector<std::string> known{
+        "AreaLightSource", "Attribute",         "ColorSpace",     "Import",          "Include",
+        "LightSource",     "MakeNamedMaterial", "Material",       "MediumInterface", "NamedMaterial",
+        "ObjectBegin",     "ObjectEnd",         "ObjectInstance", "Option",          "Shape",
+        "Texture",         "WorldBegin",        "Accelerator",    "Camera",          "Film",
+        "Integrator",      "PixelFilter",       "Sampler"};
     known.insert(known.end(), GraphicsStates::directives().begin(), GraphicsStates::directives().end());
-    if (name == "WorldEnd") refuse(place, "unknown directive \"WorldEnd\"", "scenes of pbrt-v3 are not read; pbrt --upgrade makes them scenes of pbrt-v4");
+    if (name == "WorldEnd")
+        refuse(place, "unknown directive \"WorldEnd\"",
+               "scenes of pbrt-v3 are not read; pbrt --upgrade makes them scenes of pbrt-v4");
     unknownName("directive", name, known, place.text());
 }
 
@@ -126,7 +120,9 @@ bool Reader::readSetting(const std::string& name, Tokens& tokens, const Place& p
     if (std::find(kSettings.begin(), kSettings.end(), name) == kSettings.end()) return false;
     if (inWorld_) refuse(place, fmt::format("{} stands before WorldBegin", name));
     const std::string type = tokens.text("a type");
-    if (!settings_.emplace(name, Single{type, Parameters::read(tokens, fmt::format("{} {}", name, inQuotes(type)), place)}).second)
+    if (!settings_
+             .emplace(name, Single{type, Parameters::read(tokens, fmt::format("{} {}", name, inQuotes(type)), place)})
+             .second)
         refuse(place, fmt::format("a scene has one {}", name));
     if (name == "Camera") {
         cameraToWorld_ = states_.now.toWorld.inverse();
@@ -154,10 +150,11 @@ bool Reader::readWorldDirective(const std::string& name, Tokens& tokens, const P
                                                             {"AreaLightSource", &Reader::areaLight, true},
                                                             {"ObjectBegin", &Reader::objectBegin, true},
                                                             {"ObjectInstance", &Reader::objectInstance, true},
-                                                            {"ObjectEnd", nullptr, true}}};
+                                                            {"ObjectEnd", &Reader::objectEnd, true}}};
     if (name == "ColorSpace") {
         const std::string space = tokens.text("a colour space");
-        if (space != "srgb") refuse(place, fmt::format("the colour space {} is not supported", inQuotes(space)), "\"srgb\" is");
+        if (space != "srgb")
+            refuse(place, fmt::format("the colour space {} is not supported", inQuotes(space)), "\"srgb\" is");
         return true;
     }
     if (name == "WorldBegin") {
@@ -170,8 +167,7 @@ bool Reader::readWorldDirective(const std::string& name, Tokens& tokens, const P
     for (const Directive& directive : kDirectives) {
         if (name != directive.name) continue;
         if (directive.onlyInWorld && !inWorld_) refuse(place, fmt::format("{} stands after WorldBegin", name));
-        if (name == "ObjectEnd") objectEnd(place);
-        else (this->*directive.read)(tokens, place);
+        (this->*directive.read)(tokens, place);
         return true;
     }
     return false;
@@ -179,7 +175,8 @@ bool Reader::readWorldDirective(const std::string& name, Tokens& tokens, const P
 
 void Reader::include(Tokens& tokens, const Place& place, int depth) {
     const std::string name = tokens.text("a file");
-    if (depth >= kMaxPbrtIncludes) refuse(place, fmt::format("files include each other deeper than {}", kMaxPbrtIncludes));
+    if (depth >= kMaxPbrtIncludes)
+        refuse(place, fmt::format("files include each other deeper than {}", kMaxPbrtIncludes));
     const SceneFile found = findSceneFile(dictionary_.folder, name);
     if (!found.refusal.empty()) refuse(place, found.refusal, found.hint);
     std::error_code error;
@@ -190,14 +187,16 @@ void Reader::include(Tokens& tokens, const Place& place, int depth) {
 /// What follows a type, with the defaults of Attribute directives for its kind.
 Parameters Reader::parameters(Tokens& tokens, const std::string& kind, const std::string& type, const Place& place) {
     Parameters result = Parameters::read(tokens, fmt::format("{} {}", kind, inQuotes(type)), place);
-    if (const auto defaults = states_.now.defaults.find(kind); defaults != states_.now.defaults.end()) result.addDefaults(defaults->second);
+    if (const auto defaults = states_.now.defaults.find(kind); defaults != states_.now.defaults.end())
+        result.addDefaults(defaults->second);
     return result;
 }
 
 void Reader::attribute(Tokens& tokens, const Place& place) {
     const std::string target = tokens.text("what the attribute is for");
     static const std::vector<std::string> kTargets{"light", "material", "medium", "shape", "texture"};
-    if (std::find(kTargets.begin(), kTargets.end(), target) == kTargets.end()) unknownName("attribute", target, kTargets, place.text());
+    if (std::find(kTargets.begin(), kTargets.end(), target) == kTargets.end())
+        unknownName("attribute", target, kTargets, place.text());
     const Parameters given = Parameters::read(tokens, "attribute " + inQuotes(target), place);
     std::vector<Parameter>& defaults = states_.now.defaults[target];
     defaults.insert(defaults.begin(), given.all().begin(), given.all().end());
@@ -207,7 +206,8 @@ void Reader::attribute(Tokens& tokens, const Place& place) {
 void Reader::option(Tokens& tokens, const Place&) {
     tokens.text("an option");
     const Token value = tokens.next();
-    if (value.kind != Token::Kind::Word && value.kind != Token::Kind::Text) tokens.unexpected(value, "the option's value");
+    if (value.kind != Token::Kind::Word && value.kind != Token::Kind::Text)
+        tokens.unexpected(value, "the option's value");
 }
 
 void Reader::mediumInterface(Tokens& tokens, const Place& place) {
@@ -240,19 +240,26 @@ void Reader::namedMaterial(Tokens& tokens, const Place& place) {
 }
 
 void Reader::texture(Tokens& tokens, const Place& place) {
-    const std::string name = tokens.text("a name"), valueType = tokens.text("\"float\" or \"spectrum\""), type = tokens.text("a type");
+    const std::string name = tokens.text("a name"), valueType = tokens.text("\"float\" or \"spectrum\""),
+                      type = tokens.text("a type");
     textures_.define(name, valueType, type, parameters(tokens, "texture", type, place));
 }
 
 void Reader::shape(Tokens& tokens, const Place& place) {
     const std::string type = tokens.text("a shape");
     const GraphicsState& state = states_.now;
-    auto shape = readShape(type, parameters(tokens, "shape", type, place), state.toWorld, state.reversed, textures_, dictionary_);
+    auto shape = readShape(type, parameters(tokens, "shape", type, place), state.toWorld, state.reversed, textures_,
+                           dictionary_);
     if (!shape) return;
     shape->material = state.material;
-    if (state.areaLight && !object_.empty()) refuse(place, "a light cannot be part of an object that is instanced");
-    if (state.areaLight) shape->emitter = readAreaLight(state.areaLight->first, state.areaLight->second, *shape, dictionary_);
-    (object_.empty() ? shapes_ : objects_[object_].shapes).push_back(std::move(*shape));
+    if (state.areaLight && instances_.isOpen())
+        dictionary_.unsupported("a light in an object that is instanced", place, {}, "it is left out");
+    else if (state.areaLight)
+        shape->emitter = readAreaLight(state.areaLight->first, state.areaLight->second, *shape, dictionary_);
+    if (instances_.isOpen())
+        instances_.add(std::move(*shape));
+    else
+        shapes_.push_back(std::move(*shape));
 }
 
 void Reader::light(Tokens& tokens, const Place& place) {
@@ -267,62 +274,17 @@ void Reader::areaLight(Tokens& tokens, const Place& place) {
 }
 
 void Reader::objectBegin(Tokens& tokens, const Place& place) {
-    const std::string name = tokens.text("a name");
-    if (!object_.empty()) refuse(place, "ObjectBegin stands inside another ObjectBegin");
-    if (name.empty()) refuse(place, "the object has no name");
-    if (!objects_.emplace(name, Object{{}, "", place}).second) refuse(place, fmt::format("another object is called {}", inQuotes(name)));
+    instances_.begin(tokens.text("a name"), place);
     states_.push("Object", place);
-    object_ = name;
 }
 
-void Reader::objectEnd(const Place& place) {
+void Reader::objectEnd(Tokens&, const Place& place) {
     states_.pop("Object", place);
-    object_.clear();
+    instances_.end();
 }
 
 void Reader::objectInstance(Tokens& tokens, const Place& place) {
-    const std::string name = tokens.text("a name");
-    if (!object_.empty()) refuse(place, "ObjectInstance stands inside ObjectBegin");
-    instances_.push_back({name, states_.now.toWorld, place});
-}
-
-void Reader::add(const ShapeRecord& shape, const Matrix4& moved, const Place& place) {
-    Json entry = shapeEntry(shape, moved, materials_);
-    const std::string name = dictionary_.name("shape");
-    dictionary_.add(name, std::move(entry), place);
-}
-
-/// References to groups of shapes, or copies of the shapes where there are no groups.
-void Reader::finishInstances() {
-    const bool hasGroups = contains(scenePlugins(PluginKind::Shapes), "instance");
-    double copies = 0, numbers = 0;
-    std::vector<std::string> names;
-    for (const auto& object : objects_) names.push_back(object.first);
-    for (const Instance& instance : instances_) {
-        const auto found = objects_.find(instance.object);
-        if (found == objects_.end()) unknownName("object", instance.object, names, instance.place.text());
-        Object& object = found->second;
-        if (object.shapes.empty()) continue;
-        if (!hasGroups) {
-            for (const ShapeRecord& shape : object.shapes) {
-                ++copies;
-                numbers += double(shape.positions.size() + shape.normals.size() + shape.texcoords.size() + shape.indices.size());
-                if (copies > kMostCopies || numbers > kMostCopiedNumbers)
-                    refuse(instance.place, fmt::format("all instances together hold more than {:g} shapes or {:g} coordinates", kMostCopies, kMostCopiedNumbers));
-                add(shape, instance.toWorld, instance.place);
-            }
-            continue;
-        }
-        if (object.entry.empty()) {
-            Json group = {{"type", "shapegroup"}};
-            int number = 0;
-            for (const ShapeRecord& shape : object.shapes) group[fmt::format("shape_{}", ++number)] = shapeEntry(shape, {}, materials_);
-            object.entry = dictionary_.name(instance.object);
-            dictionary_.add(object.entry, std::move(group), object.place);
-        }
-        Json entry = {{"type", "instance"}, {"shapegroup", {{"type", "ref"}, {"id", object.entry}}}, {"to_world", matrixJson(instance.toWorld)}};
-        dictionary_.add(dictionary_.name("instance"), std::move(entry), instance.place);
-    }
+    instances_.place(tokens.text("a name"), states_.now.toWorld, place);
 }
 
 void Reader::finish() {
@@ -332,13 +294,20 @@ void Reader::finish() {
     };
     if (!settings_.contains("Camera")) refuse({&files_.front(), 0}, "the scene has no Camera");
     const Single camera = setting("Camera", "");
-    dictionary_.add("sensor", readSensor(camera, cameraToWorld_, setting("Film", "rgb"), setting("PixelFilter", "gaussian")), camera.parameters.place());
+    dictionary_.add("sensor",
+                    readSensor(camera, cameraToWorld_, setting("Film", "rgb"), setting("PixelFilter", "gaussian")),
+                    camera.parameters.place());
     if (settings_.contains("Film")) dictionary_.note("sensor", "film", settings_.at("Film").parameters.place());
     // How pbrt makes its image has no effect here, and the loader says so.
-    for (const auto& [name, key] : {std::pair{"Integrator", "integrator"}, {"Sampler", "sampler"}, {"Accelerator", "accelerator"}})
-        if (settings_.contains(name)) dictionary_.add(key, {{"type", settings_.at(name).type}}, settings_.at(name).parameters.place());
-    for (const ShapeRecord& shape : shapes_) add(shape, {}, shape.place);
-    finishInstances();
+    for (const auto& [name, key] :
+         {std::pair{"Integrator", "integrator"}, {"Sampler", "sampler"}, {"Accelerator", "accelerator"}})
+        if (settings_.contains(name))
+            dictionary_.add(key, {{"type", settings_.at(name).type}}, settings_.at(name).parameters.place());
+    for (const ShapeRecord& shape : shapes_) {
+        Json entry = shapeEntry(shape, {}, materials_);
+        dictionary_.add(dictionary_.name("shape"), std::move(entry), shape.place);
+    }
+    instances_.finish();
     materials_.addUnused();
     for (auto& [light, place] : lights_) {
         const std::string name = dictionary_.name("light");

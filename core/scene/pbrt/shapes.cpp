@@ -15,11 +15,12 @@ namespace ulam::pbrt {
 namespace {
 
 constexpr int kFinestSubdivision = 12;
-constexpr double kMostTriangles = 2e7;  // of a subdivided mesh
+constexpr double kMostTriangles = 2e6;  // of a subdivided mesh
 
 void needsFull(const Parameters& p, std::string_view name, double value, double full) {
     if (std::abs(value - full) > 1e-6 * std::max(1.0, std::abs(full)))
-        refuse(p.place(), fmt::format("{} of {} is {:g}: parts of shapes are not supported", inQuotes(name), p.owner(), value));
+        refuse(p.place(),
+               fmt::format("{} of {} is {:g}: parts of shapes are not supported", inQuotes(name), p.owner(), value));
 }
 
 double positive(const Parameters& p, std::string_view name, double otherwise) {
@@ -56,19 +57,27 @@ void readDisk(const Parameters& p, ShapeRecord& shape, Dictionary&) {
 void readCylinder(const Parameters& p, ShapeRecord& shape, Dictionary&) {
     const double low = p.number("zmin", -1), high = p.number("zmax", 1);
     needsFull(p, "phimax", p.number("phimax", 360), 360);
-    shape.plugin = {{"type", "cylinder"}, {"p0", {0, 0, std::min(low, high)}}, {"p1", {0, 0, std::max(low, high)}}, {"radius", positive(p, "radius", 1)}};
+    shape.plugin = {{"type", "cylinder"},
+                    {"p0", {0, 0, std::min(low, high)}},
+                    {"p1", {0, 0, std::max(low, high)}},
+                    {"radius", positive(p, "radius", 1)}};
 }
 
 /// Vertex numbers; without them three vertices are a triangle.
 std::vector<double> indicesOf(const Parameters& p, size_t vertices) {
     std::vector<double> indices;
-    if (const Parameter* given = p.find("indices", {"integer"})) indices = given->numbers;
-    else if (vertices == 3) indices = {0, 1, 2};
-    else refuse(p.place(), fmt::format("{} of {} vertices has no \"indices\"", p.owner(), vertices));
-    if (indices.empty() || indices.size() % 3 != 0) refuse(p.place(), fmt::format("the indices of {} are not three a triangle", p.owner()));
+    if (const Parameter* given = p.find("indices", {"integer"}))
+        indices = given->numbers;
+    else if (vertices == 3)
+        indices = {0, 1, 2};
+    else
+        refuse(p.place(), fmt::format("{} of {} vertices has no \"indices\"", p.owner(), vertices));
+    if (indices.empty() || indices.size() % 3 != 0)
+        refuse(p.place(), fmt::format("the indices of {} are not three a triangle", p.owner()));
     for (const double index : indices)
         if (!(index >= 0 && index < double(vertices)))
-            refuse(p.place(), fmt::format("{} names vertex {}, but there are {} (counted from 0)", p.owner(), index, vertices));
+            refuse(p.place(),
+                   fmt::format("{} names vertex {}, but there are {} (counted from 0)", p.owner(), index, vertices));
     return indices;
 }
 
@@ -81,7 +90,8 @@ void readTriangles(const Parameters& p, ShapeRecord& shape, Dictionary&) {
         const Parameter* given = p.find(name, {type});
         if (!given) return std::vector<double>();
         if (given->numbers.size() != width * vertices)
-            refuse(given->place, fmt::format("{} of {} has {} values for {} vertices", inQuotes(name), p.owner(), given->numbers.size() / width, vertices));
+            refuse(given->place, fmt::format("{} of {} has {} values for {} vertices", inQuotes(name), p.owner(),
+                                             given->numbers.size() / width, vertices));
         return given->numbers;
     };
     shape.normals = perVertex("N", "normal", 3);
@@ -96,17 +106,20 @@ void readSubdivision(const Parameters& p, ShapeRecord& shape, Dictionary&) {
     const int levels = p.integer("levels", 3);
     p.text("scheme", "loop");
     if (levels < 0 || levels > kFinestSubdivision || double(indices.size() / 3) * std::pow(4, levels) > kMostTriangles)
-        refuse(p.place(), fmt::format("{} levels of {} are too many: at most {}, and {:g} triangles", levels, p.owner(), kFinestSubdivision, kMostTriangles));
+        refuse(p.place(), fmt::format("{} levels of {} are too many: at most {}, and {:g} triangles", levels, p.owner(),
+                                      kFinestSubdivision, kMostTriangles));
     std::vector<Vec3d> positions;
     for (size_t i = 0; i < control.size(); i += 3) positions.emplace_back(control[i], control[i + 1], control[i + 2]);
     std::vector<std::array<int, 3>> triangles;
-    for (size_t i = 0; i < indices.size(); i += 3) triangles.push_back({int(indices[i]), int(indices[i + 1]), int(indices[i + 2])});
+    for (size_t i = 0; i < indices.size(); i += 3)
+        triangles.push_back({int(indices[i]), int(indices[i + 1]), int(indices[i + 2])});
     try {
         const SubdivisionMesh mesh = subdivide(std::move(positions), std::move(triangles), levels);
         shape.plugin = {{"type", "mesh"}};
         for (const Vec3d& v : mesh.positions) shape.positions.insert(shape.positions.end(), {v.x, v.y, v.z});
         for (const Vec3d& n : mesh.normals) shape.normals.insert(shape.normals.end(), {n.x, n.y, n.z});
-        for (const auto& t : mesh.triangles) shape.indices.insert(shape.indices.end(), {double(t[0]), double(t[1]), double(t[2])});
+        for (const auto& t : mesh.triangles)
+            shape.indices.insert(shape.indices.end(), {double(t[0]), double(t[1]), double(t[2])});
     } catch (const NoSurface& error) {
         refuse(p.place(), fmt::format("{} has no limit surface: {}", p.owner(), error.what()));
     }
@@ -118,7 +131,8 @@ std::vector<std::string> plyProperties(const std::filesystem::path& file) {
     std::string header(kLongestHeader, '\0');
     std::ifstream stream(file, std::ios::binary);
     stream.read(header.data(), std::streamsize(header.size()));
-    header.resize(std::min(size_t(std::max<std::streamsize>(stream.gcount(), 0)), std::min(header.find("end_header"), header.size())));
+    header.resize(std::min(size_t(std::max<std::streamsize>(stream.gcount(), 0)),
+                           std::min(header.find("end_header"), header.size())));
     std::vector<std::string> names;
     for (size_t begin = 0; begin < header.size();) {
         const size_t end = std::min(header.find('\n', begin), header.size());
@@ -136,11 +150,15 @@ void readPlyMesh(const Parameters& p, ShapeRecord& shape, Dictionary& dictionary
     const SceneFile file = findSceneFile(dictionary.folder, name);
     if (!file.refusal.empty()) refuse(filename.place, file.refusal, file.hint);
     std::error_code error;
-    if (!std::filesystem::exists(file.path, error)) refuse(filename.place, fmt::format("there is no file {}", inQuotes(name)));
+    if (!std::filesystem::exists(file.path, error))
+        refuse(filename.place, fmt::format("there is no file {}", inQuotes(name)));
     const std::vector<std::string> properties = plyProperties(file.path);
-    const auto has = [&](std::string_view property) { return std::find(properties.begin(), properties.end(), property) != properties.end(); };
+    const auto has = [&](std::string_view property) {
+        return std::find(properties.begin(), properties.end(), property) != properties.end();
+    };
     if (const Parameter* displacement = p.find("displacement", {"texture", "string", "float"}))
-        dictionary.unsupported(fmt::format("\"displacement\" of {}", p.owner()), displacement->place, {}, "the surface stays as it is");
+        dictionary.unsupported(fmt::format("\"displacement\" of {}", p.owner()), displacement->place, {},
+                               "the surface stays as it is");
     p.ignore({"edgelength", "displacement.edgelength", "displacement.uvscale"});
     shape.plugin = {{"type", "ply"}, {"filename", name}};
     if (!has("nx")) shape.plugin["face_normals"] = true;  // without normals pbrt shades flat
@@ -154,8 +172,10 @@ Json transformed(const std::vector<double>& points, const Matrix4& m, bool asDir
     for (size_t i = 0; i < points.size(); i += 3) {
         const Vec3d v(points[i], points[i + 1], points[i + 2]);
         Vec3d out;
-        if (asDirections) m.multDirMatrix(v * factor, out);
-        else m.multVecMatrix(v, out);
+        if (asDirections)
+            m.multDirMatrix(v * factor, out);
+        else
+            m.multVecMatrix(v, out);
         for (int c = 0; c < 3; ++c) array.emplace_back(out[c]);
     }
     return result;
@@ -182,8 +202,8 @@ ShapeRecord withOwnCorners(const ShapeRecord& shape) {
 Json meshEntry(const ShapeRecord& shape, const Matrix4& m) {
     Json entry = shape.plugin;
     entry["positions"] = transformed(shape.positions, m, false, 1);
-    // ReverseOrientation turns normals around, a mirroring does not: normals are moved with the surface, and so must the
-    // winding of a mesh without normals.
+    // ReverseOrientation turns normals around, a mirroring does not: normals are moved with the surface, and so must
+    // the winding of a mesh without normals.
     const bool turned = shape.normals.empty() && shape.reversed != (linearDeterminant(m) < 0);
     Json triangles = Json::array();
     auto& array = triangles.get_ref<Json::array_t&>();
@@ -200,8 +220,8 @@ Json meshEntry(const ShapeRecord& shape, const Matrix4& m) {
 
 }  // namespace
 
-std::optional<ShapeRecord> readShape(const std::string& type, const Parameters& parameters, const Matrix4& toWorld, bool reversed,
-                                     const Textures& textures, Dictionary& dictionary) {
+std::optional<ShapeRecord> readShape(const std::string& type, const Parameters& parameters, const Matrix4& toWorld,
+                                     bool reversed, const Textures& textures, Dictionary& dictionary) {
     struct Reader {
         const char* type;
         void (*read)(const Parameters&, ShapeRecord&, Dictionary&);
@@ -234,7 +254,8 @@ std::optional<double> lightArea(const ShapeRecord& shape) {
     const double scale = std::abs(uniformScale(shape.toWorld).value_or(1));
     if (type == "sphere") return 4 * kPi * std::pow(shape.plugin["radius"].get<double>() * scale, 2);
     if (type == "cylinder")
-        return 2 * kPi * shape.plugin["radius"].get<double>() * (shape.plugin["p1"][2].get<double>() - shape.plugin["p0"][2].get<double>()) * scale * scale;
+        return 2 * kPi * shape.plugin["radius"].get<double>() *
+               (shape.plugin["p1"][2].get<double>() - shape.plugin["p0"][2].get<double>()) * scale * scale;
     const auto direction = [&](const Vec3d& v) {
         Vec3d out;
         shape.toWorld.multDirMatrix(v, out);
@@ -258,9 +279,11 @@ Json shapeEntry(const ShapeRecord& shape, const Matrix4& moved, Materials& mater
     const Matrix4 m = shape.toWorld * moved;
     const bool mirrored = linearDeterminant(m) < 0;
     const bool lacksTexcoords = shape.isMesh() ? shape.texcoords.empty() : shape.lacksTexcoords;
-    const bool needsTexcoords = lacksTexcoords && (materials.isTextured(shape.material) || (shape.alpha && !shape.alpha->isConstant()));
+    const bool needsTexcoords =
+        lacksTexcoords && (materials.isTextured(shape.material) || (shape.alpha && !shape.alpha->isConstant()));
     if (needsTexcoords && !shape.isMesh())
-        refuse(shape.place, "a textured mesh in a file without texture coordinates is not supported", "give the file properties u and v");
+        refuse(shape.place, "a textured mesh in a file without texture coordinates is not supported",
+               "give the file properties u and v");
     Json entry;
     if (shape.isMesh()) {
         entry = meshEntry(needsTexcoords ? withOwnCorners(shape) : shape, m);

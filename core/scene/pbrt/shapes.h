@@ -24,8 +24,8 @@ struct ShapeRecord {
 };
 
 /// A Shape directive; nothing where it is left out. The caller adds material and light.
-std::optional<ShapeRecord> readShape(const std::string& type, const Parameters& parameters, const Matrix4& toWorld, bool reversed,
-                                     const Textures& textures, Dictionary& dictionary);
+std::optional<ShapeRecord> readShape(const std::string& type, const Parameters& parameters, const Matrix4& toWorld,
+                                     bool reversed, const Textures& textures, Dictionary& dictionary);
 
 /// Area in the world. Of a mesh that of one triangle where all have the same: pbrt makes each a light of its own.
 std::optional<double> lightArea(const ShapeRecord& shape);

@@ -20,8 +20,9 @@ struct Glass {
 };
 
 // Refractive indices at 587.6 nm (Schott's catalogue of optical glass); F5 to F11 are pbrt's names for SF5 to SF11.
-constexpr std::array kGlasses{Glass{"glass-BK7", 1.5168},    Glass{"glass-BAF10", 1.67003}, Glass{"glass-FK51A", 1.48656},
-                              Glass{"glass-LASF9", 1.85025}, Glass{"glass-F5", 1.67271},    Glass{"glass-F10", 1.72828},
+constexpr std::array kGlasses{Glass{"glass-BK7", 1.5168},    Glass{"glass-BAF10", 1.67003},
+                              Glass{"glass-FK51A", 1.48656}, Glass{"glass-LASF9", 1.85025},
+                              Glass{"glass-F5", 1.67271},    Glass{"glass-F10", 1.72828},
                               Glass{"glass-F11", 1.78472}};
 
 Spectrum spectrum(const Imath::V3d& rgb) {
@@ -31,13 +32,15 @@ Spectrum spectrum(const Imath::V3d& rgb) {
 SpectralCurve curveOf(const Parameter& parameter, const Dictionary& dictionary) {
     std::optional<SpectralCurve> curve;
     if (!parameter.texts.empty()) {
-        if (parameter.texts.size() != 1) refuse(parameter.place, fmt::format("{} is one spectrum", inQuotes(parameter.name)));
+        if (parameter.texts.size() != 1)
+            refuse(parameter.place, fmt::format("{} is one spectrum", inQuotes(parameter.name)));
         const std::string& name = parameter.texts[0];
         const SceneFile file = findSceneFile(dictionary.folder, name);
         if (!file.refusal.empty()) refuse(parameter.place, file.refusal, file.hint);
         std::error_code error;
         if (!std::filesystem::exists(file.path, error))
-            refuse(parameter.place, fmt::format("{} is neither a spectrum that is known here nor a file", inQuotes(name)));
+            refuse(parameter.place,
+                   fmt::format("{} is neither a spectrum that is known here nor a file", inQuotes(name)));
         curve = parseCurveFile(readFile(file.path, kMaxJsonBytes));
     } else {
         curve.emplace();
@@ -51,23 +54,27 @@ SpectralCurve curveOf(const Parameter& parameter, const Dictionary& dictionary) 
     }
     if (!curve)
         refuse(parameter.place,
-               fmt::format("{} is not a spectrum: two or more wavelengths, ascending, each with its value", inQuotes(parameter.name)));
+               fmt::format("{} is not a spectrum: two or more wavelengths, ascending, each with its value",
+                           inQuotes(parameter.name)));
     return *curve;
 }
 
 Spectrum rgbOf(const Parameters& owner, const Parameter& parameter) {
-    if (parameter.numbers.size() != 3) refuse(parameter.place, fmt::format("{} of {} is one colour", inQuotes(parameter.name), owner.owner()));
+    if (parameter.numbers.size() != 3)
+        refuse(parameter.place, fmt::format("{} of {} is one colour", inQuotes(parameter.name), owner.owner()));
     return {parameter.numbers[0], parameter.numbers[1], parameter.numbers[2]};
 }
 
 Spectrum blackbodyOf(const Parameters& owner, const Parameter& parameter) {
     if (parameter.numbers.size() != 1 || !(parameter.numbers[0] >= 100 && parameter.numbers[0] <= 1e6))
-        refuse(parameter.place, fmt::format("{} of {} is one temperature from 100 to 1000000 K", inQuotes(parameter.name), owner.owner()));
+        refuse(parameter.place, fmt::format("{} of {} is one temperature from 100 to 1000000 K",
+                                            inQuotes(parameter.name), owner.owner()));
     return spectrum(blackbodyRgb(parameter.numbers[0]));
 }
 
 Spectrum unitLuminance(const Spectrum& colour, const Parameter& parameter) {
-    if (!(luminance(colour) > 0)) refuse(parameter.place, fmt::format("the spectrum of {} holds no visible light", inQuotes(parameter.name)));
+    if (!(luminance(colour) > 0))
+        refuse(parameter.place, fmt::format("the spectrum of {} holds no visible light", inQuotes(parameter.name)));
     return colour / luminance(colour);
 }
 
@@ -85,7 +92,6 @@ std::string metalIn(const Parameter* parameter, std::string_view ending) {
 
 Spectrum reflectance(const Parameters& owner, const Parameter& parameter, const Dictionary& dictionary) {
     if (parameter.type == "rgb") return rgbOf(owner, parameter);
-    if (parameter.type == "blackbody") return unitLuminance(blackbodyOf(owner, parameter), parameter);
     return spectrum(toRgb(curveOf(parameter, dictionary), SpectrumUse::Reflectance));
 }
 
@@ -96,7 +102,8 @@ Spectrum light(const Parameters& owner, std::string_view name, const Dictionary&
     if (parameter->type == "blackbody") return unitLuminance(blackbodyOf(owner, *parameter), *parameter);
     if (parameter->texts == std::vector<std::string>{"stdillum-D65"}) return Spectrum(1.0);
     // Illuminant A is defined as a black body.
-    if (parameter->texts == std::vector<std::string>{"stdillum-A"}) return unitLuminance(spectrum(blackbodyRgb(2856)), *parameter);
+    if (parameter->texts == std::vector<std::string>{"stdillum-A"})
+        return unitLuminance(spectrum(blackbodyRgb(2856)), *parameter);
     return unitLuminance(spectrum(toRgb(curveOf(*parameter, dictionary), SpectrumUse::Emission)), *parameter);
 }
 
@@ -104,8 +111,8 @@ double index(const Parameters& owner, std::string_view name, double otherwise, D
     const Parameter* parameter = owner.find(name, {"float", "spectrum"});
     if (!parameter) return otherwise;
     if (parameter->type == "float") return owner.number(name, otherwise);
-    dictionary.substitute(fmt::format("{} of {} at {} is one number for all colours: light is not dispersed", inQuotes(name), owner.owner(),
-                                      parameter->place.text()));
+    dictionary.substitute(fmt::format("{} of {} at {} is one number for all colours: light is not dispersed",
+                                      inQuotes(name), owner.owner(), parameter->place.text()));
     std::vector<std::string> names;
     if (parameter->texts.size() == 1)
         for (const Glass& glass : kGlasses) {
@@ -118,7 +125,8 @@ double index(const Parameters& owner, std::string_view name, double otherwise, D
 }
 
 Json metal(const Parameters& owner, const std::string& prefix, const Dictionary& dictionary) {
-    const Parameter *eta = owner.find(prefix + "eta", {"rgb", "spectrum"}), *k = owner.find(prefix + "k", {"rgb", "spectrum"});
+    const Parameter *eta = owner.find(prefix + "eta", {"rgb", "spectrum"}),
+                    *k = owner.find(prefix + "k", {"rgb", "spectrum"});
     if (!eta && !k) return {{"material", "Cu"}};
     const std::string a = eta ? metalIn(eta, "-eta") : "Cu", b = k ? metalIn(k, "-k") : "Cu";
     if (!a.empty() && a == b && findMetal(a)) return {{"material", a}};

@@ -5,7 +5,7 @@
 
 namespace ulam::pbrt {
 
-/// As the colour of a surface.
+/// As the colour of a surface: "rgb" or "spectrum".
 Spectrum reflectance(const Parameters& owner, const Parameter& parameter, const Dictionary& dictionary);
 
 /// As light. pbrt scales all but "rgb" to a luminance of 1; (1,1,1) is "rgb" and the default alike.

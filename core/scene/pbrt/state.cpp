@@ -29,7 +29,8 @@ Matrix4 matrix(Tokens& tokens, std::string_view directive) {
 
 Matrix4 lookAt(const Vec3d& eye, const Vec3d& target, const Vec3d& up, const Place& place) {
     const Vec3d view = (target - eye).normalized(), right = up.normalized().cross(view);
-    if (!(right.length() > 1e-9)) refuse(place, "LookAt needs an eye, a target and a direction up that is not along the view");
+    if (!(right.length() > 1e-9))
+        refuse(place, "LookAt needs an eye, a target and a direction up that is not along the view");
     const Vec3d x = right.normalized(), y = view.cross(x);
     const Matrix4 cameraToWorld(x.x, x.y, x.z, 0, y.x, y.y, y.z, 0, view.x, view.y, view.z, 0, eye.x, eye.y, eye.z, 1);
     return cameraToWorld.inverse();
@@ -38,9 +39,22 @@ Matrix4 lookAt(const Vec3d& eye, const Vec3d& target, const Vec3d& up, const Pla
 }  // namespace
 
 const std::vector<std::string>& GraphicsStates::directives() {
-    static const std::vector<std::string> names{"ActiveTransform", "AttributeBegin",     "AttributeEnd",  "ConcatTransform", "CoordinateSystem",
-                                                "CoordSysTransform", "Identity",         "LookAt",        "ReverseOrientation", "Rotate",
-                                                "Scale",           "Transform",          "TransformBegin", "TransformEnd",   "TransformTimes", "Translate"};
+    static const std::vector<std::string> names{"ActiveTransform",
+                                                "AttributeBegin",
+                                                "AttributeEnd",
+                                                "ConcatTransform",
+                                                "CoordinateSystem",
+                                                "CoordSysTransform",
+                                                "Identity",
+                                                "LookAt",
+                                                "ReverseOrientation",
+                                                "Rotate",
+                                                "Scale",
+                                                "Transform",
+                                                "TransformBegin",
+                                                "TransformEnd",
+                                                "TransformTimes",
+                                                "Translate"};
     return names;
 }
 
@@ -52,10 +66,12 @@ void GraphicsStates::transform(const Matrix4& m, const Place& place) {
         for (int column = 0; column < 4; ++column)
             if (!(std::abs(all[row][column]) <= kLargestCoordinate))
                 refuse(place, fmt::format("the transformation is not finite, or beyond {:g}", kLargestCoordinate));
-    const double size = Vec3d(all[0][0], all[0][1], all[0][2]).length() * Vec3d(all[1][0], all[1][1], all[1][2]).length() *
+    const double size = Vec3d(all[0][0], all[0][1], all[0][2]).length() *
+                        Vec3d(all[1][0], all[1][1], all[1][2]).length() *
                         Vec3d(all[2][0], all[2][1], all[2][2]).length();
     if (!(std::abs(linearDeterminant(all)) > 1e-12 * size)) refuse(place, "the transformation is not invertible");
-    if (all[0][3] != 0 || all[1][3] != 0 || all[2][3] != 0 || all[3][3] != 1) refuse(place, "the transformation is not affine");
+    if (all[0][3] != 0 || all[1][3] != 0 || all[2][3] != 0 || all[3][3] != 1)
+        refuse(place, "the transformation is not affine");
 }
 
 bool GraphicsStates::read(std::string_view directive, Tokens& tokens, const Place& place) {
@@ -121,9 +137,12 @@ void GraphicsStates::pop(const std::string& kind, const Place& place) {
     if (stack_.empty()) refuse(place, fmt::format("there is no {0}Begin for this {0}End", kind));
     Saved& saved = stack_.back();
     if (saved.kind != kind)
-        refuse(place, fmt::format("{} ends inside {}", kind, saved.kind), fmt::format("{} begins at {}", saved.kind, saved.place.text()));
-    if (kind == "Transform") now.toWorld = saved.state.toWorld;
-    else now = std::move(saved.state);
+        refuse(place, fmt::format("{} ends inside {}", kind, saved.kind),
+               fmt::format("{} begins at {}", saved.kind, saved.place.text()));
+    if (kind == "Transform")
+        now.toWorld = saved.state.toWorld;
+    else
+        now = std::move(saved.state);
     stack_.pop_back();
 }
 

@@ -13,14 +13,16 @@ uint64_t key(int a, int b) {
 /// Triangles by their directed edges: where (a, b, c) is one, the corner after (a, b) is c.
 class Connectivity {
 public:
-    Connectivity(const std::vector<std::array<int, 3>>& triangles, size_t vertices) : first_(vertices, -1), corners_(vertices, 0) {
+    Connectivity(const std::vector<std::array<int, 3>>& triangles, size_t vertices)
+        : first_(vertices, -1), corners_(vertices, 0) {
         next_.reserve(3 * triangles.size());
         for (const auto& t : triangles)
             for (size_t i = 0; i < 3; ++i) {
                 const int a = t[i], b = t[(i + 1) % 3];
                 if (a == b) throw NoSurface("a triangle has a vertex twice");
                 if (!next_.emplace(key(a, b), t[(i + 2) % 3]).second)
-                    throw NoSurface("more than two triangles meet at an edge, or neighbours turn in opposite directions");
+                    throw NoSurface(
+                        "more than two triangles meet at an edge, or neighbours turn in opposite directions");
                 first_[size_t(a)] = b;
                 ++corners_[size_t(a)];
             }
@@ -73,10 +75,12 @@ double beta(size_t valence) {
 }
 
 /// A vertex drawn towards its neighbours: at a border only to those along it.
-Vec3d relaxed(const std::vector<Vec3d>& positions, int vertex, const Connectivity::Ring& ring, double inner, double border) {
+Vec3d relaxed(const std::vector<Vec3d>& positions, int vertex, const Connectivity::Ring& ring, double inner,
+              double border) {
     const auto& r = ring.vertices;
     const Vec3d& p = positions[size_t(vertex)];
-    if (ring.isBorder) return p * (1 - 2 * border) + (positions[size_t(r.front())] + positions[size_t(r.back())]) * border;
+    if (ring.isBorder)
+        return p * (1 - 2 * border) + (positions[size_t(r.front())] + positions[size_t(r.back())]) * border;
     Vec3d sum(0.0);
     for (const int neighbour : r) sum += positions[size_t(neighbour)];
     return p * (1 - double(r.size()) * inner) + sum * inner;
@@ -115,16 +119,19 @@ SubdivisionMesh refined(const SubdivisionMesh& mesh) {
     SubdivisionMesh fine;
     for (int v = 0; v < int(mesh.positions.size()); ++v) {
         const auto ring = connectivity.ring(v);
-        fine.positions.push_back(ring.vertices.empty() ? mesh.positions[size_t(v)]
-                                                       : relaxed(mesh.positions, v, ring, beta(ring.vertices.size()), 1.0 / 8));
+        fine.positions.push_back(ring.vertices.empty()
+                                     ? mesh.positions[size_t(v)]
+                                     : relaxed(mesh.positions, v, ring, beta(ring.vertices.size()), 1.0 / 8));
     }
     std::unordered_map<uint64_t, int> middles;
     const auto middle = [&](int a, int b) {
-        const auto [known, isNew] = middles.try_emplace(key(std::min(a, b), std::max(a, b)), int(fine.positions.size()));
+        const auto [known, isNew] =
+            middles.try_emplace(key(std::min(a, b), std::max(a, b)), int(fine.positions.size()));
         if (!isNew) return known->second;
         const auto at = [&](int i) -> const Vec3d& { return mesh.positions[size_t(i)]; };
         const int c = connectivity.after(a, b), d = connectivity.after(b, a);
-        fine.positions.push_back(c < 0 || d < 0 ? (at(a) + at(b)) * 0.5 : (at(a) + at(b)) * (3.0 / 8) + (at(c) + at(d)) * (1.0 / 8));
+        fine.positions.push_back(c < 0 || d < 0 ? (at(a) + at(b)) * 0.5
+                                                : (at(a) + at(b)) * (3.0 / 8) + (at(c) + at(d)) * (1.0 / 8));
         return known->second;
     };
     fine.triangles.reserve(4 * mesh.triangles.size());
@@ -150,7 +157,8 @@ SubdivisionMesh subdivide(std::vector<Vec3d> positions, std::vector<std::array<i
         limit[size_t(v)] = relaxed(mesh.positions, v, ring, 1 / (n + 3 / (8 * beta(ring.vertices.size()))), 1.0 / 5);
     }
     for (int v = 0; v < int(limit.size()); ++v)
-        if (const auto ring = connectivity.ring(v); !ring.vertices.empty()) mesh.normals[size_t(v)] = normalAt(limit, v, ring);
+        if (const auto ring = connectivity.ring(v); !ring.vertices.empty())
+            mesh.normals[size_t(v)] = normalAt(limit, v, ring);
     mesh.positions = std::move(limit);
     return mesh;
 }

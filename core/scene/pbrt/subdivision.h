@@ -1,6 +1,6 @@
 #pragma once
-// Subdivision surfaces of triangles after C. Loop, "Smooth subdivision surfaces based on triangles", 1987, with the weights
-// that pbrt has: limit positions and normals of the vertices after some levels.
+// Subdivision surfaces of triangles after C. Loop, "Smooth subdivision surfaces based on triangles", 1987, with the
+// weights that pbrt has: limit positions and normals of the vertices after some levels.
 
 #include <array>
 #include <stdexcept>

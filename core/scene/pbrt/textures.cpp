@@ -16,9 +16,9 @@ Matrix4 affine(const std::array<double, 2>& u, const std::array<double, 2>& v, c
 
 Matrix4 mapping(const Parameters& p) {
     const std::string kind = p.text("mapping", "uv");
-    if (kind != "uv")
-        unknownName("mapping of a texture", kind, {"uv"}, p.find("mapping", {"string"})->place.text());
-    const double us = p.number("uscale", 1), vs = p.number("vscale", 1), u = p.number("udelta", 0), v = p.number("vdelta", 0);
+    if (kind != "uv") unknownName("mapping of a texture", kind, {"uv"}, p.find("mapping", {"string"})->place.text());
+    const double us = p.number("uscale", 1), vs = p.number("vscale", 1), u = p.number("udelta", 0),
+                 v = p.number("vdelta", 0);
     if (us == 0 || vs == 0) refuse(p.place(), fmt::format("uscale and vscale of {} must not be 0", p.owner()));
     return affine({us, 0}, {0, vs}, {u, v});
 }
@@ -38,11 +38,13 @@ const Matrix4& toPbrt(Parametrization parametrization) {
     return parametrization == Parametrization::Sphere ? sphere : parametrization == Parametrization::Disk ? disk : same;
 }
 
-void Textures::define(const std::string& name, const std::string& valueType, const std::string& type, const Parameters& parameters) {
+void Textures::define(const std::string& name, const std::string& valueType, const std::string& type,
+                      const Parameters& parameters) {
     if (valueType != "float" && valueType != "spectrum")
         unknownName("kind of texture", valueType, {"float", "spectrum"}, parameters.place().text());
     Named& textures = valueType == "float" ? numbers_ : colours_;
-    if (textures.contains(name)) refuse(parameters.place(), fmt::format("another {} texture is called {}", valueType, inQuotes(name)));
+    if (textures.contains(name))
+        refuse(parameters.place(), fmt::format("another {} texture is called {}", valueType, inQuotes(name)));
     Texture texture = read(type, valueType == "float", parameters);
     texture.name = name;
     texture.place = parameters.place();
@@ -86,18 +88,24 @@ Texture Textures::picture(const Parameters& p, bool) const {
     texture.kind = Texture::Kind::Picture;
     const Parameter& filename = p.needed("filename", {"string"});
     texture.plugin = {{"type", "bitmap"}, {"filename", p.text("filename", "")}};
-    const std::string filter = p.text("filter", "bilinear"), wrap = p.text("wrap", "repeat"), encoding = p.text("encoding", "sRGB");
+    const std::string filter = p.text("filter", "bilinear"), wrap = p.text("wrap", "repeat"),
+                      encoding = p.text("encoding", "sRGB");
     p.number("maxanisotropy", 8);
     // The others differ in how they smooth what is smaller than a pixel; here the pixel's samples do that.
-    if (filter == "point") texture.plugin["filter_type"] = "nearest";
+    if (filter == "point")
+        texture.plugin["filter_type"] = "nearest";
     else if (filter != "bilinear" && filter != "trilinear" && filter != "EWA" && filter != "ewa")
         unknownName("filter", filter, {"bilinear", "EWA", "point", "trilinear"}, filename.place.text());
-    if (wrap == "clamp") texture.plugin["wrap_mode"] = "clamp";
+    if (wrap == "clamp")
+        texture.plugin["wrap_mode"] = "clamp";
     else if (wrap != "repeat")
-        return unsupported(fmt::format("wrap {} of {} (other than \"repeat\" and \"clamp\")", inQuotes(wrap), p.owner()), p);
-    if (encoding == "linear") texture.plugin["raw"] = true;
+        return unsupported(
+            fmt::format("wrap {} of {} (other than \"repeat\" and \"clamp\")", inQuotes(wrap), p.owner()), p);
+    if (encoding == "linear")
+        texture.plugin["raw"] = true;
     else if (encoding != "sRGB")
-        return unsupported(fmt::format("encoding {} of {} (other than \"sRGB\" and \"linear\")", inQuotes(encoding), p.owner()), p);
+        return unsupported(
+            fmt::format("encoding {} of {} (other than \"sRGB\" and \"linear\")", inQuotes(encoding), p.owner()), p);
     texture.first = Spectrum(p.number("scale", 1));
     if (p.flag("invert", false)) texture.plugin["invert"] = true;
     // There the picture's upper edge is at v = 1.
@@ -110,7 +118,8 @@ Texture Textures::checkerboard(const Parameters& p, bool isNumber) const {
     texture.kind = Texture::Kind::Checkerboard;
     if (p.integer("dimension", 2) != 2) return unsupported(fmt::format("{} in 3 dimensions", p.owner()), p);
     const Texture first = value(p, "tex1", isNumber, 1), second = value(p, "tex2", isNumber, 0);
-    if (!first.isConstant() || !second.isConstant()) return unsupported(fmt::format("{} of other textures", p.owner()), p);
+    if (!first.isConstant() || !second.isConstant())
+        return unsupported(fmt::format("{} of other textures", p.owner()), p);
     texture.first = first.first;
     texture.second = second.first;
     // There a square is a unit, here half of one.
@@ -122,7 +131,8 @@ Texture Textures::product(const Texture& a, const Texture& b, const Parameters& 
     if (!a.isConstant() && !b.isConstant()) return unsupported(fmt::format("{} by another texture", p.owner()), p);
     Texture result = a.isConstant() ? b : a;
     const Spectrum factor = (a.isConstant() ? a : b).first;
-    if (result.plugin.contains("invert") && factor != Spectrum(1.0)) return unsupported(fmt::format("{} of an inverted picture", p.owner()), p);
+    if (result.plugin.contains("invert") && factor != Spectrum(1.0))
+        return unsupported(fmt::format("{} of an inverted picture", p.owner()), p);
     result.first *= factor;
     result.second *= factor;
     return result;
@@ -133,7 +143,8 @@ Texture Textures::scaled(const Parameters& p, bool isNumber) const {
 }
 
 Texture Textures::mixed(const Parameters& p, bool isNumber) const {
-    const Texture a = value(p, "tex1", isNumber, 0), b = value(p, "tex2", isNumber, 1), amount = value(p, "amount", true, 0.5);
+    const Texture a = value(p, "tex1", isNumber, 0), b = value(p, "tex2", isNumber, 1),
+                  amount = value(p, "amount", true, 0.5);
     const Spectrum t = amount.first;
     if (amount.isConstant() && t == Spectrum(0.0)) return a;
     if (amount.isConstant() && t == Spectrum(1.0)) return b;
@@ -149,7 +160,8 @@ Texture Textures::mixed(const Parameters& p, bool isNumber) const {
 Texture Textures::named(const Named& textures, const Parameter& parameter) const {
     std::vector<std::string> names;
     for (const auto& [name, texture] : textures) names.push_back(name);
-    if (parameter.texts.size() != 1) refuse(parameter.place, fmt::format("{} names one texture", inQuotes(parameter.name)));
+    if (parameter.texts.size() != 1)
+        refuse(parameter.place, fmt::format("{} names one texture", inQuotes(parameter.name)));
     const auto found = textures.find(parameter.texts[0]);
     if (found == textures.end()) unknownName("texture", parameter.texts[0], names, parameter.place.text());
     return found->second;
@@ -179,7 +191,8 @@ Json Textures::use(const Texture& texture, Parametrization parametrization) {
     if (texture.kind == Texture::Kind::Picture) {
         if (texture.first != Spectrum(1.0)) plugin["scale"] = colourJson(texture.first);
     } else {
-        plugin = {{"type", "checkerboard"}, {"color0", colourJson(texture.first)}, {"color1", colourJson(texture.second)}};
+        plugin = {
+            {"type", "checkerboard"}, {"color0", colourJson(texture.first)}, {"color1", colourJson(texture.second)}};
     }
     const Matrix4 toUv = toPbrt(parametrization) * texture.toUv;
     if (toUv != Matrix4()) plugin["to_uv"] = matrixJson(toUv);

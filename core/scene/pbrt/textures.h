@@ -33,7 +33,8 @@ public:
     explicit Textures(Dictionary& dictionary) : dictionary_(dictionary) {}
 
     /// A Texture directive.
-    void define(const std::string& name, const std::string& valueType, const std::string& type, const Parameters& parameters);
+    void define(const std::string& name, const std::string& valueType, const std::string& type,
+                const Parameters& parameters);
 
     /// A parameter that may be a constant or name a texture; `number`: it has no colour.
     Texture colour(const Parameters& owner, std::string_view name, const Spectrum& otherwise) const;

@@ -24,13 +24,15 @@ struct Exported {
         Image sky(512, 257);
         for (int j = 0; j < 257; ++j)
             for (int i = 0; i < 512; ++i)
-                sky.at(i, j) = {float(1 + std::sin(2 * kPi * i / 512) * std::sin(kPi * j / 256)), float(1 + std::cos(kPi * j / 256)), 0.3f};
+                sky.at(i, j) = {float(1 + std::sin(2 * kPi * i / 512) * std::sin(kPi * j / 256)),
+                                float(1 + std::cos(kPi * j / 256)), 0.3f};
         writeExr((files.path / "sky.exr").string(), sky);
         Image square(32, 32, Rgb(0.5f));
         square.at(20, 12) = Rgb(40, 30, 20);
         writeExr((files.path / "square.exr").string(), square);
         Image picture(4, 4);
-        for (int i = 0; i < 16; ++i) picture.pixels[size_t(i)] = {0.05f * float(i), 0.9f - 0.05f * float(i), i % 3 == 0 ? 0.8f : 0.2f};
+        for (int i = 0; i < 16; ++i)
+            picture.pixels[size_t(i)] = {0.05f * float(i), 0.9f - 0.05f * float(i), i % 3 == 0 ? 0.8f : 0.2f};
         writeExr((files.path / "picture.exr").string(), picture);
     }
     SceneDescription describe(const std::string& text) const { return describeText(text, files.path); }
@@ -58,15 +60,16 @@ std::vector<std::vector<double>> tileMeans(const Scene& scene, uint64_t seed) {
         std::vector<double> means(size_t(3 * across * down));
         for (int y = 0; y < down * kTile; ++y)
             for (int x = 0; x < across * kTile; ++x)
-                for (int c = 0; c < 3; ++c) means[size_t(3 * (y / kTile * across + x / kTile) + c)] += image.at(x, y)[c] / (kTile * kTile);
+                for (int c = 0; c < 3; ++c)
+                    means[size_t(3 * (y / kTile * across + x / kTile) + c)] += image.at(x, y)[c] / (kTile * kTile);
         result.resize(means.size());
         for (size_t i = 0; i < means.size(); ++i) result[i].push_back(means[i]);
     }
     return result;
 }
 
-/// The smallest p of Welch's tests of all tiles and channels, after Holm. Means that differ by less than single precision
-/// and the resampling of environments make are equal.
+/// The smallest p of Welch's tests of all tiles and channels, after Holm. Means that differ by less than single
+/// precision and the resampling of environments make are equal.
 double smallestP(const SceneDescription& a, const SceneDescription& b, const Json& film = {}) {
     constexpr double kResampling = 1e-3;
     const auto first = tileMeans(a.build(film), 11), second = tileMeans(b.build(film), 12);
@@ -84,7 +87,8 @@ const std::string kFilm = R"("film": {"type": "hdrfilm", "width": 48, "height": 
 
 const std::string kTextures = R"({"type": "scene",
     "sensor": {"type": "thinlens", "fov": 50, "aperture_radius": 0.05, "focus_distance": 5,
-               "to_world": [{"type": "lookat", "origin": [1, 2, 5], "target": [0, 0.7, 0], "up": [0, 1, 0]}], )" + kFilm + R"(},
+               "to_world": [{"type": "lookat", "origin": [1, 2, 5], "target": [0, 0.7, 0], "up": [0, 1, 0]}], )" +
+                              kFilm + R"(},
     "sky": {"type": "envmap", "filename": "sky.exr", "scale": 0.7, "to_world": [{"type": "rotate", "axis": [1, 2, 0], "angle": 70}]},
     "picture": {"type": "bitmap", "filename": "picture.exr", "to_uv": [{"type": "scale", "value": [2, 3, 1]}, {"type": "translate", "value": [0.25, 0.1, 0]}]},
     "floor": {"type": "rectangle", "to_world": [{"type": "scale", "value": 3}, {"type": "rotate", "axis": [1, 0, 0], "angle": -90}],
@@ -113,7 +117,8 @@ const std::string kLights = R"({"type": "scene",
 
 const std::string kAreas = R"({"type": "scene",
     "sensor": {"type": "perspective", "fov": 40, "fov_axis": "y",
-               "to_world": [{"type": "lookat", "origin": [0, 1, 5], "target": [0, 0.8, 0], "up": [0.2, 1, 0]}], )" + kFilm + R"(},
+               "to_world": [{"type": "lookat", "origin": [0, 1, 5], "target": [0, 0.8, 0], "up": [0.2, 1, 0]}], )" +
+                           kFilm + R"(},
     "air": {"type": "constant", "radiance": [0.1, 0.2, 0.3]},
     "shell": {"type": "sphere", "radius": 8, "flip_normals": true, "emitter": {"type": "area", "radiance": 0.2}},
     "lamp": {"type": "disk", "to_world": [{"type": "scale", "value": [0.5, -0.8, 1]}, {"type": "rotate", "axis": [1, 0, 0], "angle": 100}, {"type": "translate", "value": [0, 2.5, 0]}],
@@ -130,7 +135,8 @@ TEST_CASE("pbrt-v4 export: a scene that is read back looks the same") {
     Exported e;
     SECTION("the Cornell box, and one with a lamp 5 % brighter does not") {
         const auto box = [&](double lamp) {
-            return SceneDescription::fromNode(JsonNode(Json{{"type", "cornell_box"}, {"radiance", lamp}}), e.files.path);
+            return SceneDescription::fromNode(JsonNode(Json{{"type", "cornell_box"}, {"radiance", lamp}}),
+                                              e.files.path);
         };
         const Json film = {{"width", 32}, {"height", 32}};
         const SceneDescription back = e.roundTrip(box(10));
@@ -138,11 +144,15 @@ TEST_CASE("pbrt-v4 export: a scene that is read back looks the same") {
         CHECK(smallestP(box(10.5), back, film) < kLevel);
         CHECK(e.leftOut == std::vector<std::string>{"black backs of 6 BSDFs, which reflect on both sides in pbrt"});
     }
-    SECTION("an environment, textures and a lens") { CHECK(smallestP(e.describe(kTextures), e.roundTrip(e.describe(kTextures))) > kLevel); }
+    SECTION("an environment, textures and a lens") {
+        CHECK(smallestP(e.describe(kTextures), e.roundTrip(e.describe(kTextures))) > kLevel);
+    }
     SECTION("a spot, a point, a sun, rough materials and a cropped film") {
         CHECK(smallestP(e.describe(kLights), e.roundTrip(e.describe(kLights))) > kLevel);
     }
-    SECTION("shapes that shine from one side") { CHECK(smallestP(e.describe(kAreas), e.roundTrip(e.describe(kAreas))) > kLevel); }
+    SECTION("shapes that shine from one side") {
+        CHECK(smallestP(e.describe(kAreas), e.roundTrip(e.describe(kAreas))) > kLevel);
+    }
 }
 
 TEST_CASE("pbrt-v4 export: what pbrt lacks is named") {
@@ -162,14 +172,18 @@ TEST_CASE("pbrt-v4 export: what pbrt lacks is named") {
     const Scene back = e.roundTrip(description).build();
     std::string all;
     for (const std::string& line : e.leftOut) all += line + "\n";
-    for (const char* line : {"\"path\" at /integrator", "\"independent\" at /sensor/sampler", "\"pixel_format\" of \"hdrfilm\" at /sensor/film/pixel_format",
-                             "the linear edge of \"spot\", written as a smooth one, at /lamp", "\"roughdiffuse\", written as \"diffuse\", at /clay/x",
-                             "\"plastic\", written as \"coateddiffuse\", at /b/bsdf/x", "the back of \"twosided\" at /b/bsdf/y",
-                             "\"specular_transmittance\" of \"dielectric\" at /c/bsdf/specular_transmittance",
-                             "\"phong\", written as \"roughplastic\", at /d/bsdf/x", "\"principled\", written as \"roughconductor\", at /e/bsdf/x",
-                             "Beckmann's distribution of \"roughconductor\", written as GGX, at /f/bsdf/x",
-                             "texture coordinates that are turned against the surface's at /g/bsdf/x/reflectance",
-                             "the texture of \"radiance\", written as its mean, at /h"}) {
+    for (const char* line :
+         {"\"path\" at /integrator", "\"independent\" at /sensor/sampler",
+          "\"pixel_format\" of \"hdrfilm\" at /sensor/film/pixel_format",
+          "the linear edge of \"spot\", written as a smooth one, at /lamp",
+          "\"roughdiffuse\", written as \"diffuse\", at /clay/x",
+          "\"plastic\", written as \"coateddiffuse\", at /b/bsdf/x", "the back of \"twosided\" at /b/bsdf/y",
+          "\"specular_transmittance\" of \"dielectric\" at /c/bsdf/specular_transmittance",
+          "\"phong\", written as \"roughplastic\", at /d/bsdf/x",
+          "\"principled\", written as \"roughconductor\", at /e/bsdf/x",
+          "Beckmann's distribution of \"roughconductor\", written as GGX, at /f/bsdf/x",
+          "texture coordinates that are turned against the surface's at /g/bsdf/x/reflectance",
+          "the texture of \"radiance\", written as its mean, at /h"}) {
         INFO(all);
         INFO(line);
         CHECK(mentions(all, line));
@@ -192,9 +206,11 @@ TEST_CASE("Mitsuba 3 export: octahedral environments and scaled pictures are mad
     const std::string xml = readFile(e.folder / "scene.xml");
     CHECK(!mentions(xml, "octahedral"));
     CHECK(!mentions(xml, "invert"));
-    const Image sky = readImage((e.folder / "textures" / "environment.exr").string()), picture = readImage((e.folder / "textures" / "picture.exr").string());
+    const Image sky = readImage((e.folder / "textures" / "environment.exr").string()),
+                picture = readImage((e.folder / "textures" / "picture.exr").string());
     CHECK(sky.width == 64);
     CHECK(picture.pixels[2].x == Approx(1 - 0.5 * 0.1));
     const Scene before = description.build(), after = SceneDescription::fromFile(e.folder / "scene.xml").build();
-    CHECK(std::get<EnvmapEmitter>(after.emitters[0]).map->totalLuminance() == Approx(std::get<EnvmapEmitter>(before.emitters[0]).map->totalLuminance()));
+    CHECK(std::get<EnvmapEmitter>(after.emitters[0]).map->totalLuminance() ==
+          Approx(std::get<EnvmapEmitter>(before.emitters[0]).map->totalLuminance()));
 }

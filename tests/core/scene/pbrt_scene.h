@@ -25,10 +25,14 @@ struct PbrtScene {
         const JsonDocument document = readFile(text);
         return SceneDescription::fromNode(document.root(), folder.path).build();
     }
-    Scene loadWorld(const std::string& world) const { return load("Camera \"perspective\"\nWorldBegin\n" + world + "\n"); }
+    Scene loadWorld(const std::string& world) const {
+        return load("Camera \"perspective\"\nWorldBegin\n" + world + "\n");
+    }
 };
 
-inline Json entry(const JsonDocument& document, const char* name) { return document.json().at(name); }
+inline Json entry(const JsonDocument& document, const char* name) {
+    return document.json().at(name);
+}
 
 inline void near(const Json& values, const std::vector<double>& expected, double tolerance = 1e-9) {
     INFO(values.dump());

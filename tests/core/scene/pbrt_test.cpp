@@ -27,7 +27,8 @@ const char* const kLit = "LightSource \"point\"\nShape \"sphere\"\n";
 }  // namespace
 
 TEST_CASE("pbrt: a basic scene is the dictionary that one would write") {
-    const Json scene = PbrtScene{}.readFile(R"(# remark
+    const Json scene = PbrtScene{}
+                           .readFile(R"(# remark
         Option "disablepixeljitter" true
         Integrator "volpath" "integer maxdepth" 5   Sampler "zsobol"   Accelerator "bvh"   ColorSpace "srgb"
         Film "rgb" "integer xresolution" 64 "integer yresolution" [ 48 ] "string filename" "a.exr"
@@ -40,7 +41,8 @@ TEST_CASE("pbrt: a basic scene is the dictionary that one would write") {
           Translate 1 2 3
           Shape "sphere" "float radius" 2
         AttributeEnd
-        LightSource "point" "point3 from" [ 0 4 0 ] "rgb I" [ 5 6 7 ])").json();
+        LightSource "point" "point3 from" [ 0 4 0 ] "rgb I" [ 5 6 7 ])")
+                           .json();
     CHECK(scene == Json::parse(R"({"type": "scene",
         "sensor": {"type": "perspective", "fov": 40.0, "fov_axis": "smaller",
                    "to_world": [-1.0, 0.0, 0.0, 0.0,  0.0, 1.0, 0.0, 0.0,  0.0, 0.0, 1.0, -5.0,  0.0, 0.0, 0.0, 1.0],
@@ -61,35 +63,43 @@ TEST_CASE("pbrt: the image is not mirrored, and has pbrt's angle of view") {
     isNear(seen(plain, {0, 0, 4}), 100, 50);
     isNear(seen(plain, {4, 0, 4}), 150, 50);
     isNear(seen(plain, {0, 4, 8}), 100, 25);
-    const Scene tall = pbrt.load("Film \"rgb\" \"integer xresolution\" 100 \"integer yresolution\" 200\nCamera \"perspective\"\nWorldBegin\n" + std::string(kLit));
+    const Scene tall = pbrt.load(
+        "Film \"rgb\" \"integer xresolution\" 100 \"integer yresolution\" 200\nCamera \"perspective\"\nWorldBegin\n" +
+        std::string(kLit));
     isNear(seen(tall, {2, 4, 4}), 75, 50);
     // Seen from +x towards -x in a left-handed world with y up: +z is to the right.
     const Scene side = pbrt.load(film + "LookAt 5 0 0  0 0 0  0 1 0\nCamera \"perspective\"\nWorldBegin\n" + kLit);
     isNear(seen(side, {0, 0, 5}), 150, 50);
     // A mirrored world, as exporters from right-handed programs write it.
-    const Scene mirrored = pbrt.load(film + "Scale -1 1 1\nLookAt 5 0 0  0 0 0  0 1 0\nCamera \"perspective\"\nWorldBegin\n" + kLit);
+    const Scene mirrored =
+        pbrt.load(film + "Scale -1 1 1\nLookAt 5 0 0  0 0 0  0 1 0\nCamera \"perspective\"\nWorldBegin\n" + kLit);
     isNear(seen(mirrored, {0, 0, 5}), 50, 50);
     // A camera in a scaled world sees the same.
     const Scene scaled = pbrt.load(film + "Scale 3 3 3\nCamera \"perspective\"\nWorldBegin\n" + kLit);
     isNear(seen(scaled, {4, 0, 4}), 150, 50);
     // The window's left edge at 0, its right one at 2, in units of tan(fov/2) = 1.
-    const Scene shifted = pbrt.load(film + "Camera \"perspective\" \"float screenwindow\" [ 0 2 -.25 .75 ]\nWorldBegin\n" + kLit);
+    const Scene shifted =
+        pbrt.load(film + "Camera \"perspective\" \"float screenwindow\" [ 0 2 -.25 .75 ]\nWorldBegin\n" + kLit);
     isNear(seen(shifted, {1, 0.25f, 1}), 100, 50);
     isNear(seen(shifted, {0.5f, 0.5f, 1}), 50, 25);
 }
 
 TEST_CASE("pbrt: crops of the film, its filters, and what has no effect") {
     const PbrtScene pbrt;
-    const auto sensor = [&](const std::string& settings) { return entry(pbrt.readFile(settings + "\nWorldBegin\n"), "sensor"); };
+    const auto sensor = [&](const std::string& settings) {
+        return entry(pbrt.readFile(settings + "\nWorldBegin\n"), "sensor");
+    };
     const Json crop = sensor(R"(Camera "perspective" "float lensradius" 0.5 "float focaldistance" 3
         Film "gbuffer" "integer xresolution" 100 "integer yresolution" 50 "float cropwindow" [ .25 .5 0 .5 ] "float iso" 200
         PixelFilter "triangle" "float xradius" 1.5 "float yradius" 1.5)");
     CHECK(crop["type"] == "thinlens");
     CHECK(crop["aperture_radius"] == 0.5);
     CHECK(crop["focus_distance"] == 3.0);
-    CHECK(crop["film"] == Json::parse(R"({"type": "gbuffer", "width": 100, "height": 50, "crop_offset_x": 25, "crop_offset_y": 0,
+    CHECK(crop["film"] ==
+          Json::parse(R"({"type": "gbuffer", "width": 100, "height": 50, "crop_offset_x": 25, "crop_offset_y": 0,
         "crop_width": 25, "crop_height": 25, "rfilter": {"type": "tent", "radius": 1.5}, "iso": 200.0})"));
-    const Json bounds = sensor(R"(Camera "perspective" Film "rgb" "integer pixelbounds" [ 10 20 5 7 ] PixelFilter "mitchell")");
+    const Json bounds =
+        sensor(R"(Camera "perspective" Film "rgb" "integer pixelbounds" [ 10 20 5 7 ] PixelFilter "mitchell")");
     CHECK(bounds["film"]["crop_offset_x"] == 10);
     CHECK(bounds["film"]["crop_height"] == 2);
     CHECK(bounds["film"]["width"] == 1280);
@@ -97,7 +107,9 @@ TEST_CASE("pbrt: crops of the film, its filters, and what has no effect") {
     CHECK(sensor("Camera \"perspective\" \"float shutterclose\" 0.5")["film"]["exposure_time"] == 0.5);
     CHECK(sensor("Camera \"perspective\"")["film"]["rfilter"] == Json::parse(R"({"type": "gaussian", "stddev": 0.5})"));
 
-    const Scene scene = pbrt.load("Camera \"perspective\"\nFilm \"gbuffer\" \"float iso\" 50\nIntegrator \"mlt\"\nWorldBegin\n" + std::string(kLit));
+    const Scene scene =
+        pbrt.load("Camera \"perspective\"\nFilm \"gbuffer\" \"float iso\" 50\nIntegrator \"mlt\"\nWorldBegin\n" +
+                  std::string(kLit));
     std::string warnings;
     for (const std::string& warning : scene.warnings) warnings += warning + "\n";
     CHECK(mentions(warnings, "\"iso\" has no effect, at " + (pbrt.folder.path / "scene.pbrt").string() + ":2:1"));
@@ -126,7 +138,8 @@ TEST_CASE("pbrt: transformations, and what of the state ends with its block") {
     is(place("Translate 1 0 0 CoordinateSystem \"here\" Identity CoordSysTransform \"here\""), 2, 0, 0);
     is(place("AttributeBegin Translate 1 0 0 AttributeEnd"), 1, 0, 0);
     is(place("TransformBegin Translate 1 0 0 TransformEnd TransformTimes 0 1 ActiveTransform All"), 1, 0, 0);
-    const Scene camera = pbrt.load("Translate 0 0 5 Camera \"perspective\" WorldBegin CoordSysTransform \"camera\" LightSource \"point\"");
+    const Scene camera = pbrt.load(
+        "Translate 0 0 5 Camera \"perspective\" WorldBegin CoordSysTransform \"camera\" LightSource \"point\"");
     is(std::get<PointEmitter>(camera.emitters[0]).position, 0, 0, -5);
 
     const auto scene = pbrt.read(R"(Attribute "shape" "float radius" 3
@@ -183,10 +196,12 @@ TEST_CASE("pbrt: mistakes are refused with their place and the nearest name") {
     refused("Material \"difuse\" Shape \"sphere\"", "did you mean \"diffuse\"", "3:1");
     refused("MakeNamedMaterial \"a\" \"string type\" \"difuse\"", "did you mean \"diffuse\"", "3:1");
     refused("MakeNamedMaterial \"a\"", "has no \"type\"", "3:1");
-    refused("MakeNamedMaterial \"gold\" \"string type\" \"diffuse\" NamedMaterial \"gld\" Shape \"sphere\"", "did you mean \"gold\"", "3:");
+    refused("MakeNamedMaterial \"gold\" \"string type\" \"diffuse\" NamedMaterial \"gld\" Shape \"sphere\"",
+            "did you mean \"gold\"", "3:");
     refused("Texture \"a\" \"spectrum\" \"imagmap\"", "did you mean \"imagemap\"", "3:1");
     refused("Texture \"a\" \"colour\" \"constant\"", "unknown kind of texture", "3:1");
-    refused("Material \"diffuse\" \"texture reflectance\" \"wood\" Shape \"sphere\"", "unknown texture \"wood\"", "3:20");
+    refused("Material \"diffuse\" \"texture reflectance\" \"wood\" Shape \"sphere\"", "unknown texture \"wood\"",
+            "3:20");
     refused("Shape \"sphere\" \"float radus\" 2", "did you mean \"radius\"", "3:16");
     refused("Shape \"sphere\" \"integer radius\" 2", "is of type float, found integer", "3:16");
     refused("Shape \"sphere\" \"flot radius\" 2", "did you mean \"float\"", "3:16");
@@ -220,19 +235,28 @@ TEST_CASE("pbrt: mistakes are refused with their place and the nearest name") {
     refused("Camera \"perspective\"", "before WorldBegin", "3:1");
     refused("WorldBegin", "one WorldBegin", "3:1");
     refused("ObjectInstance \"a\"", "unknown object \"a\"", "3:1");
-    refused("ObjectBegin \"a\" AreaLightSource \"diffuse\" Shape \"sphere\" ObjectEnd", "a light cannot be part", "3:");
-    refused("MakeNamedMaterial \"a\" \"string type\" \"diffuse\" MakeNamedMaterial \"a\" \"string type\" \"diffuse\"", "another material", "3:");
+    refused("ObjectBegin \"a\" AreaLightSource \"diffuse\" Shape \"sphere\" ObjectEnd", "a light in an object", "3:");
+    refused("MakeNamedMaterial \"a\" \"string type\" \"diffuse\" MakeNamedMaterial \"a\" \"string type\" \"diffuse\"",
+            "another material", "3:");
     CHECK(pbrt.read("MediumInterface \"\" \"\" MediumInterface \"\"").json().size() == 2);
     CHECK(errorOf([&] { pbrt.readFile("WorldBegin"); }).has("the scene has no Camera"));
     CHECK(errorOf([&] { pbrt.readFile("Camera \"perspective\""); }).has("the scene has no WorldBegin"));
     CHECK(errorOf([&] { pbrt.readFile("Shape \"sphere\""); }).has("after WorldBegin"));
     CHECK(errorOf([&] { pbrt.readFile("Camera \"orthographic\" WorldBegin"); }).has("unknown camera"));
-    CHECK(errorOf([&] { pbrt.readFile("Camera \"perspective\" \"float fov\" 180 WorldBegin"); }).has("between 0 and 180"));
-    CHECK(errorOf([&] { pbrt.readFile("Camera \"perspective\" \"float frameaspectratio\" 3 WorldBegin"); }).has("not square"));
-    CHECK(errorOf([&] { pbrt.readFile("Film \"rgb\" \"integer xresolution\" 0 Camera \"perspective\" WorldBegin"); }).has("at least one pixel"));
+    CHECK(errorOf([&] {
+              pbrt.readFile("Camera \"perspective\" \"float fov\" 180 WorldBegin");
+          }).has("between 0 and 180"));
+    CHECK(errorOf([&] {
+              pbrt.readFile("Camera \"perspective\" \"float frameaspectratio\" 3 WorldBegin");
+          }).has("not square"));
+    CHECK(errorOf([&] {
+              pbrt.readFile("Film \"rgb\" \"integer xresolution\" 0 Camera \"perspective\" WorldBegin");
+          }).has("at least one pixel"));
     CHECK(errorOf([&] { pbrt.readFile(std::string("Camera \0", 8)); }).has("a zero byte"));
     CHECK(errorOf([&] { pbrt.read("Include \"\xff.pbrt\""); }).has("is not UTF-8"));
-    const Complaint defined = errorOf([&] { readSceneDocument(pbrt.folder.path / "scene.pbrt", {.definitions = {{"a", "1"}}}); });
+    const Complaint defined = errorOf([&] {
+        readSceneDocument(pbrt.folder.path / "scene.pbrt", {.definitions = {{"a", "1"}}});
+    });
     CHECK(defined.code == ExitCode::Usage);
     std::string deep;
     for (int i = 0; i < 2000; ++i) deep += "AttributeBegin ";
@@ -251,23 +275,29 @@ TEST_CASE("pbrt: --lenient replaces what is not known and says so") {
             Shape "sphere"
             Material "hair" "float eta" 1.5
             Shape "sphere")");
-        return SceneDescription::fromNode(readSceneDocument(pbrt.folder.path / "scene.pbrt", {.definitions = {}, .lenient = true}).root(), pbrt.folder.path).build();
+        return SceneDescription::fromNode(
+                   readSceneDocument(pbrt.folder.path / "scene.pbrt", {.definitions = {}, .lenient = true}).root(),
+                   pbrt.folder.path)
+            .build();
     }();
     REQUIRE(scene.shapes.size() == 2);
     REQUIRE(scene.substitutions.size() == 5);
     std::string all;
     for (const std::string& s : scene.substitutions) all += s + "\n";
-    for (const char* part : {"the light \"goniometric\" at", "scene.pbrt:2:13 is not known: it is left out", "the shape \"curve\" at", "the texture \"marble\" at",
-                             "the material \"hair\" at", "scene.pbrt:8:13 is not known: magenta", "\"normalmap\" of material \"diffuse\""})
+    for (const char* part : {"the light \"goniometric\" at", "scene.pbrt:2:13 is not known: it is left out",
+                             "the shape \"curve\" at", "the texture \"marble\" at", "the material \"hair\" at",
+                             "scene.pbrt:8:13 is not known: magenta", "\"normalmap\" of material \"diffuse\""})
         CHECK(mentions(all, part));
     CHECK(pbrt.complaint("LightSource \"goniometric\"").has("unknown light"));
-    CHECK(pbrt.complaint("Material \"diffuse\" \"string normalmap\" \"n.png\" Shape \"sphere\"").has("\"normalmap\" of material \"diffuse\" is not supported"));
+    CHECK(pbrt.complaint("Material \"diffuse\" \"string normalmap\" \"n.png\" Shape \"sphere\"")
+              .has("\"normalmap\" of material \"diffuse\" is not supported"));
 }
 
 TEST_CASE("pbrt: truncated and damaged files give a scene or an error") {
     const PbrtScene pbrt;
     pbrt.folder.write("a.pbrt", "Shape \"sphere\"");
-    const std::string text = R"(LookAt 0 0 5 0 0 0 0 1 0 Camera "perspective" "float fov" [ 40 ] Film "rgb" "integer xresolution" 8
+    const std::string text =
+        R"(LookAt 0 0 5 0 0 0 0 1 0 Camera "perspective" "float fov" [ 40 ] Film "rgb" "integer xresolution" 8
         WorldBegin AttributeBegin Texture "c" "spectrum" "checkerboard" "rgb tex1" [ 1 0 .5 ] Material "diffuse" "texture reflectance" "c"
         Shape "trianglemesh" "point3 P" [ 0 0 0 1 0 0 0 1 0 ] "integer indices" [ 0 1 2 ] AttributeEnd Include "a.pbrt"
         ObjectBegin "o" Shape "loopsubdiv" "integer levels" 1 "point3 P" [ 0 0 0 1 0 0 0 1 0 ] "integer indices" [ 0 1 2 ] ObjectEnd
