@@ -11,6 +11,8 @@
 #include "core/scene/loading/sensors.h"
 #include "core/scene/loading/shapes.h"
 #include "core/scene/loading/textures.h"
+#include "core/scene/mitsuba/xml.h"
+#include "core/scene/pbrt/pbrt.h"
 
 namespace ulam {
 namespace {
@@ -32,7 +34,7 @@ public:
 
 private:
     std::vector<JsonNode> entries() const { return entriesOf(root_); }
-    void checkNames() const;
+    void nameEntries();
     JsonNode sensorNode() const;
     JsonNode resolve(const JsonNode& node) override;
     uint32_t texture(const JsonNode& node, const ParameterInfo& parameter) override;
@@ -44,6 +46,7 @@ private:
     void addEmitter(const JsonNode& node);
 
     JsonNode root_;
+    std::map<std::string, JsonNode> named_;  // entries by name
     LoadContext context_;
     Scene scene_;
     std::map<std::string, uint32_t> materials_, textures_;  // by JSON pointer of the plugin
@@ -60,10 +63,9 @@ JsonNode SceneBuilder::sensorNode() const {
     return *sensor;
 }
 
-void SceneBuilder::checkNames() const {
-    std::map<std::string, JsonNode> known;
+void SceneBuilder::nameEntries() {
     for (const JsonNode& entry : entries()) {
-        const auto [first, isNew] = known.try_emplace(entryName(entry), entry);
+        const auto [first, isNew] = named_.try_emplace(entryName(entry), entry);
         if (!isNew)
             entry.fail(fmt::format("another entry is called {} too", inQuotes(first->first)),
                        fmt::format("it stands at {}", first->second.where()));
@@ -77,17 +79,16 @@ JsonNode SceneBuilder::named(const JsonNode& node, PluginKind kind, const char* 
     if (pluginName(node) != "ref") return node;
     node.allowOnly("key of a reference", {"type", "id"});
     const JsonNode id = node.at("id");
-    std::vector<std::string> names;
-    for (const JsonNode& entry : entries()) {
-        const std::string name = entryName(entry);
-        if (name == id.string()) {
-            if (!contains(scenePlugins(kind), pluginName(entry)))
-                id.fail(fmt::format("{} is no {}, but {}", inQuotes(name), what, inQuotes(pluginName(entry))));
-            return entry;
-        }
-        names.push_back(name);
+    const auto found = named_.find(id.string());
+    if (found == named_.end()) {
+        std::vector<std::string> names;
+        for (const JsonNode& entry : entries()) names.push_back(entryName(entry));
+        unknownName("entry of the scene", id.string(), names, id.where());
     }
-    unknownName("entry of the scene", id.string(), names, id.where());
+    const JsonNode& entry = found->second;
+    if (!contains(scenePlugins(kind), pluginName(entry)))
+        id.fail(fmt::format("{} is no {}, but {}", inQuotes(found->first), what, inQuotes(pluginName(entry))));
+    return entry;
 }
 
 bool SceneBuilder::isTexture(const JsonNode& node) const {
@@ -156,7 +157,7 @@ void SceneBuilder::addEmitter(const JsonNode& node) {
 }
 
 Scene SceneBuilder::build(const JsonNode& film) {
-    checkNames();
+    nameEntries();
     for (const JsonNode& entry : entries()) {
         const std::string& name = pluginName(entry);
         if (noteIfUnused(entry, context_)) continue;
@@ -195,10 +196,12 @@ struct SceneDescription::Content {
     std::unique_ptr<Generator> generator;
 };
 
-JsonDocument readSceneDocument(const std::filesystem::path& file, const XmlOptions& options) {
+JsonDocument readSceneDocument(const std::filesystem::path& file, const SceneFileOptions& options) {
     if (file.extension() == ".xml") return readMitsubaXml(file, options);
-    if (!options.definitions.empty() || options.lenient)
-        fail(ExitCode::Usage, "-D and --lenient are for Mitsuba's XML, and {} is none", inQuotes(file.string()));
+    if (!options.definitions.empty()) fail(ExitCode::Usage, "-D is for Mitsuba's XML, and {} is none", inQuotes(file.string()));
+    if (file.extension() == ".pbrt") return readPbrt(file, options.lenient);
+    if (options.lenient)
+        fail(ExitCode::Usage, "--lenient is for Mitsuba's XML and pbrt's scenes, and {} is neither", inQuotes(file.string()));
     return JsonDocument::fromFile(file);
 }
 

@@ -212,6 +212,10 @@ class Describe(CliTest):
         self.write("out/mine", {})
         self.assertIn("out holds mine", self.ulam("scene", "scene.json", "--export", "mitsuba3", "out", expect=6).stderr)
         self.ulam("scene", "scene.json", "--export", "mitsuba3", "scene.json/out", expect=6)
+        self.assertEqual(self.ulam("scene", "scene.json", "--export", "pbrt4", "pbrt").stdout, "pbrt/scene.pbrt\n")
+        read = json.loads(self.ulam("scene", "pbrt/scene.pbrt", "--info", "--json").stdout)
+        self.assertEqual((read["shapes"], read["emitters"]), (2, 1))
+        self.ulam("scene", "pbrt/scene.pbrt", "-D", "a=1", "--info", expect=2)
 
     def test_compare(self):
         self.render()

@@ -4,17 +4,14 @@
 #include <array>
 #include <map>
 #include <pugixml.hpp>
-#include <set>
 #include <sstream>
 
-#include "core/scene/export/export_folder.h"
+#include "core/scene/export/assets.h"
 #include "core/scene/export/nearest.h"
-#include "core/scene/loading/context.h"
 #include "core/scene/loading/entries.h"
 #include "core/scene/loading/plugin_table.h"
 #include "core/scene/loading/sensors.h"
 #include "core/scene/loading/transform.h"
-#include "core/scene/mesh_io.h"
 
 namespace ulam {
 namespace {
@@ -41,34 +38,7 @@ std::map<std::string, TaggedPlugin> taggedPlugins() {
 /// Parameters for which 0 stands here for what Mitsuba takes where they are not given.
 constexpr std::array kZeroIsDefault{"fov", "beam_width"};
 
-/// Letters, digits, "_" and "-" only.
-std::string plain(std::string text) {
-    for (char& c : text)
-        if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-') c = '_';
-    return text;
-}
-
-/// Plain names, never the same twice.
-class UniqueNames {
-public:
-    std::string make(const std::string& name, const std::string& ending = "") {
-        // Mitsuba keeps ids that begin with "_" to itself.
-        std::string stem = plain(name);
-        if (stem.empty() || stem[0] == '_') stem.insert(0, 1, 'x');
-        std::string unique = stem + ending;
-        for (int i = 2; !taken_.insert(unique).second; ++i) unique = fmt::format("{}_{}{}", stem, i, ending);
-        return unique;
-    }
-    /// The name of a copy of a file, with its ending.
-    std::string makeFile(const std::filesystem::path& file) {
-        const std::string ending = file.extension().string();
-        return make((file.parent_path() / file.stem()).string(),
-                    ending.empty() ? "" : fmt::format(".{}", plain(ending.substr(1))));
-    }
-
-private:
-    std::set<std::string> taken_;
-};
+constexpr ExportFormat kFormat{"scene.xml", " Written by Ulam for Mitsuba 3 "};
 
 /// Shortest decimals that read back as the same numbers.
 std::string decimals(const std::vector<double>& numbers) {
@@ -93,8 +63,10 @@ pugi::xml_node appendProperty(pugi::xml_node parent, const char* tag, const std:
 class Exporter {
 public:
     Exporter(const SceneDescription& description, const std::filesystem::path& folder)
-        : scene_(description.build()), filmSize_(description.filmSize()), folder_(folder) {
-        files_.folder = description.folder();
+        : scene_(description.build()),
+          filmSize_(description.filmSize()),
+          folder_(folder, kFormat),
+          assets_(folder_, description.folder()) {
         dictionary_ = withClearSensors(JsonNode(description.dictionary()));
     }
 
@@ -107,7 +79,6 @@ private:
     void entry(const JsonNode& node);
     pugi::xml_node plugin(pugi::xml_node parent, const JsonNode& node);
     void property(pugi::xml_node parent, const ParameterInfo& parameter, const JsonNode& value);
-    std::string copyFile(const JsonNode& filename, const char* tag);
     void mesh(const JsonNode& node);
     JsonNode withClearSensors(const JsonNode& dictionary) const;
 
@@ -116,23 +87,13 @@ private:
     Scene scene_;
     FilmSize filmSize_;
     ExportFolder folder_;
-    LoadContext files_;
-    std::map<std::string, std::string> ids_, copies_;  // by name of an entry, by file name in the scene
-    UniqueNames idNames_, fileNames_;
+    ExportAssets assets_;
+    std::map<std::string, std::string> ids_;  // by name of an entry
+    UniqueNames idNames_;
     pugi::xml_document document_;
     pugi::xml_node root_;
     std::vector<std::string> leftOut_;
 };
-
-std::string Exporter::copyFile(const JsonNode& filename, const char* tag) {
-    const auto [copy, isNew] = copies_.try_emplace(filename.string());
-    if (isNew) {
-        copy->second = fmt::format("{}/{}", std::string_view(tag) == "shape" ? "meshes" : "textures",
-                                   fileNames_.makeFile(filename.string()));
-        folder_.write(copy->second, files_.read(filename));
-    }
-    return copy->second;
-}
 
 void Exporter::property(pugi::xml_node parent, const ParameterInfo& parameter, const JsonNode& value) {
     const std::string& name = parameter.name;
@@ -151,7 +112,8 @@ void Exporter::property(pugi::xml_node parent, const ParameterInfo& parameter, c
         const char* tag = parameter.type != "json" ? "rgb" : name == "direction" ? "vector" : "point";
         appendProperty(parent, tag, name, decimals(value.numbers(3)));
     } else if (name == "filename") {
-        appendProperty(parent, "string", name, copyFile(value, parent.name()));
+        appendProperty(parent, "string", name,
+                       assets_.copy(value, std::string_view(parent.name()) == "shape" ? "meshes" : "textures"));
     } else if (value.isString()) {
         appendProperty(parent, "string", name, value.string());
     } else if (value.isBoolean()) {
@@ -173,6 +135,11 @@ pugi::xml_node Exporter::plugin(pugi::xml_node parent, const JsonNode& node) {
         const JsonNode written(nearest->dictionary);
         if (!nearest->same) leaveOut(node, fmt::format("{}, written as {},", inQuotes(pluginName(node)), inQuotes(pluginName(written))));
         return plugin(parent, written);
+    }
+    if (const auto baked = assets_.bakedPicture(node)) {
+        pugi::xml_node picture = plugin(parent, JsonNode(baked->plugin));
+        appendProperty(picture, "string", "filename", baked->file);
+        return picture;
     }
     const TaggedPlugin& known = plugins_.at(pluginName(node));
     pugi::xml_node xml = parent.append_child(known.tag);
@@ -197,8 +164,7 @@ void Exporter::mesh(const JsonNode& node) {
         std::find_if(scene_.shapes.begin(), scene_.shapes.end(), [&](const Shape& s) { return s.id == node.key(); });
     const Mesh& loaded = std::get<Mesh>(shape->geometry);
     const std::string& id = ids_.at(entryName(node));
-    const std::string file = fmt::format("meshes/{}", fileNames_.make(id, ".ply"));
-    folder_.write(file, plyBytes(loaded));
+    const std::string file = assets_.mesh(loaded, id);
     Json ply = node.json();
     for (const ParameterInfo& parameter : plugins_.at("mesh").parameters) ply.erase(parameter.name);
     ply["type"] = "ply";
@@ -234,13 +200,13 @@ JsonNode Exporter::withClearSensors(const JsonNode& dictionary) const {
 void Exporter::entry(const JsonNode& node) {
     const std::string& type = pluginName(node);
     const auto known = plugins_.find(type);
-    if (noteIfUnused(node, files_) || known == plugins_.end()) return leaveOut(node, inQuotes(type));
+    if (noteIfUnused(node, assets_.files) || known == plugins_.end()) return leaveOut(node, inQuotes(type));
     if (type == "mesh") return mesh(node);
     plugin(root_, node).append_attribute("id") = ids_.at(entryName(node)).c_str();
 }
 
 std::vector<std::string> Exporter::run() {
-    document_.append_child(pugi::node_comment).set_value(ExportFolder::mark);
+    document_.append_child(pugi::node_comment).set_value(kFormat.mark);
     root_ = document_.append_child("scene");
     root_.append_attribute("version") = "3.0.0";
     const std::vector<JsonNode> entries = entriesOf(dictionary_);
@@ -248,7 +214,7 @@ std::vector<std::string> Exporter::run() {
     for (const JsonNode& node : entries) entry(node);
     std::ostringstream text;
     document_.save(text, "  ");
-    folder_.write(ExportFolder::sceneFile, text.str());
+    folder_.writeScene(text.str());
     folder_.commit();
     return leftOut_;
 }

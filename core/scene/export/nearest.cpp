@@ -21,16 +21,37 @@ double number(const JsonNode& node, const char* name, double otherwise) {
     return value && value->isNumber() ? value->number() : otherwise;
 }
 
-/// Microfacets of these roughnesses over a base.
-Json glossyPrincipled(const JsonNode& node, double alphaU, double alphaV) {
+/// The index of refraction that reflects as much at normal incidence as the gloss: ((η − 1)/(η + 1))².
+double glossIor(const JsonNode& node) {
     const auto specular = node.find("specular_reflectance");
     const bool textured = specular && isPlugin(*specular) && pluginName(*specular) != "rgb";
-    const Spectrum reflectance = specular && !textured ? parseSpectrum(*specular) : GlossParameters().specularReflectance;
-    // Fresnel's reflectance at normal incidence is ((η − 1)/(η + 1))².
+    const Spectrum reflectance =
+        specular && !textured ? parseSpectrum(*specular) : GlossParameters().specularReflectance;
     const double root = std::sqrt(std::min(luminance(reflectance), 0.6));
+    return (1 + root) / (1 - root);
+}
+
+struct GlossWidth {
+    double u, v;  ///< α
+};
+
+GlossWidth glossWidth(const JsonNode& node) {
+    if (pluginName(node) == "phong") {
+        // As wide as Beckmann's distribution of this roughness (Walter et al. 2007, §5.2).
+        const double alpha = std::sqrt(2 / (number(node, "exponent", Phong::Parameters().exponent) + 2));
+        return {alpha, alpha};
+    }
+    const double alpha = number(node, "alpha", Ward::Parameters().alpha);
+    const double u = number(node, "alpha_u", 0), v = number(node, "alpha_v", 0);
+    return {u > 0 ? u : alpha, v > 0 ? v : alpha};
+}
+
+/// Microfacets of these roughnesses over a base.
+Json glossyPrincipled(const JsonNode& node) {
+    const auto [alphaU, alphaV] = glossWidth(node);
     Json result = {{"type", "principled"},
                    {"base_color", given(node, "diffuse_reflectance", 0.5)},
-                   {"eta", (1 + root) / (1 - root)},
+                   {"eta", glossIor(node)},
                    {"roughness", std::pow(alphaU * alphaV, 0.25)}};
     // α_v/α_u = 1 − 0.9 anisotropic
     if (alphaU > alphaV) result["anisotropic"] = std::min(1.0, (1 - alphaV / alphaU) / 0.9);
@@ -45,6 +66,18 @@ Json blended(const std::vector<JsonNode>& nested, const std::vector<double>& wei
     return {{"type", "blendbsdf"}, {"weight", 1 - share}, {"a", nested[i].json()}, {"b", blended(nested, weights, i + 1, rest - weights[i])}};
 }
 
+/// What blends of two can say too, with the weight that other renderers want written.
+std::optional<Json> inBlends(const JsonNode& node) {
+    if (pluginName(node) == "mixturebsdf") {
+        const auto nested = nestedPlugins(node, {});
+        return blended(nested, node.at("weights").numbers(nested.size()), 0, 1);
+    }
+    if (pluginName(node) != "blendbsdf" || node.find("weight")) return std::nullopt;
+    Json result = node.json();
+    result["weight"] = 0.5;
+    return result;
+}
+
 /// A coat over a diffuse base, or the base alone.
 Json coated(const JsonNode& node, bool rough) {
     const auto nested = nestedPlugins(node, {});
@@ -57,31 +90,50 @@ Json coated(const JsonNode& node, bool rough) {
     return result;
 }
 
+Json glossyPlastic(const Json& base, double ior, double alpha) {
+    return {{"type", "roughplastic"}, {"diffuse_reflectance", base},           {"int_ior", ior},   {"ext_ior", 1},
+            {"distribution", "ggx"},  {"alpha", std::clamp(alpha, 1e-4, 1.0)}, {"nonlinear", true}};
+}
+
+/// Metal, glass or plastic, whichever there is most of.
+Json plainPrincipled(const JsonNode& node) {
+    const Json base = given(node, "base_color", 0.5);
+    const double roughness = number(node, "roughness", 0.5), alpha = std::clamp(roughness * roughness, 1e-4, 1.0);
+    const double specular = number(node, "specular", 0.5);
+    const double ior = number(node, "eta", 2 / (1 - std::sqrt(0.08 * specular)) - 1);
+    if (number(node, "metallic", 0) > 0.5)
+        return {{"type", "roughconductor"},
+                {"material", "none"},
+                {"specular_reflectance", base},
+                {"distribution", "ggx"},
+                {"alpha", alpha}};
+    if (number(node, "spec_trans", 0) > 0.5)
+        return {
+            {"type", "roughdielectric"}, {"int_ior", ior}, {"ext_ior", 1}, {"distribution", "ggx"}, {"alpha", alpha}};
+    return glossyPlastic(base, ior, alpha);
+}
+
 }  // namespace
 
 std::optional<Nearest> nearestInMitsuba3(const JsonNode& node) {
     const std::string& type = pluginName(node);
-    if (type == "mixturebsdf") {
-        const auto nested = nestedPlugins(node, {});
-        return Nearest{blended(nested, node.at("weights").numbers(nested.size()), 0, 1), true};
-    }
-    if (type == "blendbsdf" && !node.find("weight")) {
-        Json result = node.json();
-        result["weight"] = 0.5;
-        return Nearest{std::move(result), true};
-    }
+    if (const auto exact = inBlends(node)) return Nearest{*exact, true};
     if (type == "coating" || type == "roughcoating") return Nearest{coated(node, type == "roughcoating"), false};
     if (type == "roughdiffuse") return Nearest{{{"type", "diffuse"}, {"reflectance", given(node, "reflectance", 0.5)}}, false};
-    if (type == "phong") {
-        // As wide as Beckmann's distribution of this roughness (Walter et al. 2007, §5.2).
-        const double alpha = std::sqrt(2 / (number(node, "exponent", Phong::Parameters().exponent) + 2));
-        return Nearest{glossyPrincipled(node, alpha, alpha), false};
+    if (type == "phong" || type == "ward") return Nearest{glossyPrincipled(node), false};
+    return std::nullopt;
+}
+
+std::optional<Nearest> nearestInPbrt4(const JsonNode& node) {
+    const std::string& type = pluginName(node);
+    if (const auto exact = inBlends(node)) return Nearest{*exact, true};
+    if (type == "coating" || type == "roughcoating") return Nearest{coated(node, type == "roughcoating"), false};
+    if (type == "roughdiffuse") return Nearest{{{"type", "diffuse"}, {"reflectance", given(node, "reflectance", 0.5)}}, false};
+    if (type == "phong" || type == "ward") {
+        const auto [u, v] = glossWidth(node);
+        return Nearest{glossyPlastic(given(node, "diffuse_reflectance", 0.5), glossIor(node), std::sqrt(u * v)), false};
     }
-    if (type == "ward") {
-        const double alpha = number(node, "alpha", Ward::Parameters().alpha);
-        const double u = number(node, "alpha_u", 0), v = number(node, "alpha_v", 0);
-        return Nearest{glossyPrincipled(node, u > 0 ? u : alpha, v > 0 ? v : alpha), false};
-    }
+    if (type == "principled") return Nearest{plainPrincipled(node), false};
     return std::nullopt;
 }
 

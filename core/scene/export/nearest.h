@@ -1,5 +1,5 @@
 #pragma once
-// What stands for a plugin of Ulam that Mitsuba 3 does not have.
+// What stands for a plugin of Ulam that another renderer does not have.
 
 #include <optional>
 
@@ -20,5 +20,11 @@ struct Nearest {
 ///   phong, ward            principled with the same base, lobe width and reflectance at normal incidence; its gloss is grey
 ///                          and rises towards grazing angles
 std::optional<Nearest> nearestInMitsuba3(const JsonNode& node);
+
+/// The same for pbrt-v4, in Ulam's plugins that pbrt has.
+///   roughdiffuse  diffuse, without the roughness
+///   phong, ward   roughplastic with the same base, mean lobe width and reflectance at normal incidence
+///   principled    roughconductor, roughdielectric or roughplastic, by what there is most of
+std::optional<Nearest> nearestInPbrt4(const JsonNode& node);
 
 }  // namespace ulam

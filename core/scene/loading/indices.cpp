@@ -24,7 +24,8 @@ constexpr std::array kIndices{
 
 }  // namespace
 
-double namedIndex(const JsonNode& node) {
+double refractiveIndex(const JsonNode& node) {
+    if (!node.isString()) return node.number();
     std::vector<std::string> names;
     for (const NamedIndex& index : kIndices) {
         if (index.name == node.string()) return index.ior;

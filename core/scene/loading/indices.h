@@ -5,8 +5,8 @@
 
 namespace ulam {
 
-/// The index of the substance that a string names.
-double namedIndex(const JsonNode& node);
+/// An index of refraction as scenes write it: a number, or the name of a substance.
+double refractiveIndex(const JsonNode& node);
 
 /// As users see them: an index of refraction may be the name of a substance.
 std::vector<ParameterInfo> withNamedIndices(std::vector<ParameterInfo> parameters);
@@ -22,7 +22,7 @@ P parseWithIndices(const JsonNode& node, std::vector<std::string> elsewhere = {}
         const auto value = node.find(parameter.name);
         auto* const* member = std::get_if<double*>(&parameter.member);
         if (!value || !value->isString() || !member || !parameter.name.ends_with("_ior")) continue;
-        **member = namedIndex(*value);
+        **member = refractiveIndex(*value);
         elsewhere.push_back(parameter.name);
     }
     list.parse(node, elsewhere);
