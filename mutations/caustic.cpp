@@ -43,6 +43,7 @@ public:
         if (p.reject != Reject::None || (p.reject = edit.join()) != Reject::None) return p;
         p.logForward = *logDensity(x, p.y, context);
         p.logReverse = *logDensity(p.y, x, context);
+        rejectIfRoundedAway(p);
         return p;
     }
 

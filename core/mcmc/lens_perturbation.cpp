@@ -46,6 +46,7 @@ Proposal LensPerturbation::propose(const Sample& x, int m, StepContext& context)
     const auto atX = response(scene, x), atY = response(scene, p.y);
     p.logForward = logDensity(scene, x, atX, p.y, atY, m);
     p.logReverse = logDensity(scene, p.y, atY, x, atX, m);
+    rejectIfRoundedAway(p);
     return p;
 }
 

@@ -77,9 +77,15 @@ struct AnglePerturbation {
     double pdf(const Vec3f& from, const Vec3f& to) const {
         const Imath::V3d c = Imath::V3d(from).cross(Imath::V3d(to));
         const double s = c.length(), theta = std::atan2(s, double(dot(from, to)));
-        return angle.pdf(theta) / (2 * kPi * s);
+        return s > 0 ? angle.pdf(theta) / (2 * kPi * s) : 0;
     }
 };
+
+/// Between vertices that lie close together, the direction from place to place may be further from the one that was drawn
+/// than a step's rounding allows. Such a proposal is impossible by its own density, and so is the way back.
+inline void rejectIfRoundedAway(Proposal& p) {
+    if (p.logForward == -std::numeric_limits<double>::infinity()) p.reject = Reject::NotInvertible;
+}
 
 /// Indices of the vertices next to the camera: the first that is not delta, counted from the camera (0 if none is).
 inline int firstSmoothFromCamera(const Path& path) {

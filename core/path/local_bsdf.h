@@ -1,7 +1,9 @@
 #pragma once
-// The BSDF at one point of a surface: the right side of its material, its textures looked up, its cuts applied.
+// The BSDF at one point of a surface: the right side of its material, its textures looked up, its layers in place.
 
-#include "core/path/path.h"
+#include "core/path/varnish.h"
+
+#include <utility>
 
 namespace ulam {
 
@@ -30,7 +32,7 @@ template <class B>
 
 /// Writes a texture's value into the member with this index of the list `textured`.
 template <class B>
-void bind(B& bsdf, const Coating::Binding& binding, const Texture& texture, const Vec2f& uv) {
+void bind(B& bsdf, const TexturedBsdf::Binding& binding, const Texture& texture, const Vec2f& uv) {
     int index = 0;
     auto visit = [&]<class M>(const char*, M B::*member) {
         if (index++ != binding.member) return;
@@ -40,25 +42,20 @@ void bind(B& bsdf, const Coating::Binding& binding, const Texture& texture, cons
     B::textured(visit);
 }
 
-inline double opacityAt(const Scene& scene, const Vertex& v) {
-    const Material& m = scene.materialAt(v);
-    if (m.opacityTexture == kNone) return m.opacity;
-    return std::clamp(textureValue(scene.textures[m.opacityTexture], scene.shapes[v.shape].texcoord(v)), 0.0, 1.0);
-}
-
-/// Calls `function(bsdf)` with a coating of v's material as it is at v.
 template <class Function>
 decltype(auto) withCoating(const Scene& scene, const Vertex& v, const Coating& coating, Function&& function) {
-    return dispatch(coating.bsdf, [&]<class B>(const B& plain) -> decltype(auto) {
-        const auto cut = [&](const B& bsdf) -> decltype(auto) {
-            if (scene.materialAt(v).masked) return function(Masked<B>{bsdf, opacityAt(scene, v)});
-            return function(bsdf);
-        };
-        if (coating.bindings.empty()) return cut(plain);
+    const auto* textured = std::get_if<TexturedBsdf>(&coating.layer);
+    if (!textured) [[unlikely]] {
+        if (const auto* mixture = std::get_if<Mixture>(&coating.layer)) return function(MixtureAt(scene, v, *mixture));
+        if (const auto* relief = std::get_if<Relief>(&coating.layer)) return function(ReliefAt(scene, v, *relief));
+        return function(VarnishAt(scene, v, std::get<Varnish>(coating.layer)));
+    }
+    return dispatch(textured->bsdf, [&]<class B>(const B& plain) -> decltype(auto) {
+        if (textured->bindings.empty()) return function(plain);
         B bound = plain;
         const Vec2f uv = scene.shapes[v.shape].texcoord(v);
-        for (const Coating::Binding& b : coating.bindings) bind(bound, b, scene.textures[b.texture], uv);
-        return cut(bound);
+        for (const TexturedBsdf::Binding& b : textured->bindings) bind(bound, b, scene.textures[b.texture], uv);
+        return function(std::as_const(bound));
     });
 }
 

@@ -357,16 +357,64 @@ Factors factorsOf(const Principled& bsdf, Lobe lobe, const Vec3d& l, const Vec3d
     return out;
 }
 
-/// Straight light passes a cut-out part as it is.
-template <class B>
-Factors factorsOf(const Masked<B>& bsdf, Lobe lobe, const Vec3d& l, const Vec3d& c) {
-    Factors out = factorsOf(bsdf.nested, lobe, l, c);
-    for (double& x : out) x *= bsdf.opacity;
-    if (lobe != Lobe::Null || (l.z > 0) == (c.z > 0)) return out;
-    const double passed = 1 - bsdf.opacity;
-    for (size_t i = 0; i < 3; ++i) out[i] += passed;
-    out[3] += passed * std::abs(c.z);
-    out[4] += passed * std::abs(l.z);
+// Declared ahead: what layers hold may be layers.
+Factors factorsOf(const MixtureAt& mixture, Lobe lobe, const Vec3d& l, const Vec3d& c);
+Factors factorsOf(const ReliefAt& relief, Lobe lobe, const Vec3d& l, const Vec3d& c);
+Factors factorsOf(const VarnishAt& at, Lobe lobe, const Vec3d& l, const Vec3d& c);
+
+Factors factorsOf(const MixtureAt& mixture, Lobe lobe, const Vec3d& l, const Vec3d& c) {
+    Factors out{};
+    for (size_t i = 0; i < mixture.size(); ++i) {
+        const Factors part = mixture.part(i, [&](const auto& bsdf) { return factorsOf(bsdf, lobe, l, c); });
+        for (size_t j = 0; j < out.size(); ++j) out[j] += mixture.share(i) * part[j];
+    }
+    return out;
+}
+
+/// f |cosθ| is the nested BSDF's, where the light comes to the same side of both normals.
+Factors factorsOf(const ReliefAt& relief, Lobe lobe, const Vec3d& l, const Vec3d& c) {
+    const Vec3d turnedLight = relief.turned(l), turnedCamera = relief.turned(c);
+    Factors out = relief.nested([&](const auto& bsdf) { return factorsOf(bsdf, lobe, turnedLight, turnedCamera); });
+    const double ratio = turnedLight.z / l.z;
+    for (size_t i = 0; i < 3; ++i) out[i] *= ratio > 0 ? ratio : 0;
+    return out;
+}
+
+Factors factorsOf(const VarnishAt& at, Lobe lobe, const Vec3d& l, const Vec3d& c) {
+    if (l.z <= 0 || c.z <= 0) return {};
+    const Varnish& varnish = at.varnish();
+    const double n2 = varnish.ior * varnish.ior;
+    const auto refracted = [n2](const Vec3d& w) {
+        const double sin2 = (w.x * w.x + w.y * w.y) / n2;
+        return Vec3d(w.x / std::sqrt(n2), w.y / std::sqrt(n2), std::sqrt(1 - sin2));
+    };
+    const Vec3d lIn = refracted(l), cIn = refracted(c);
+    const auto crossing = [&](double cosTheta) {
+        return varnish.rough ? varnish.rough->transmittance(cosTheta) : 1 - fresnelReflectance(1, cosTheta, varnish.ior);
+    };
+    const auto part = [&](double cosTheta) {
+        return coatPart(1 - crossing(cosTheta), varnish.specularReflectance, Spectrum(at.nestedAlbedo()));
+    };
+    const double partLight = part(l.z), partCamera = part(c.z), perSolidAngle = lobe == Lobe::Smooth ? 1 / n2 : 1;
+    Factors out = at.nested([&](const auto& bsdf) { return factorsOf(bsdf, lobe, lIn, cIn); });
+    for (int i = 0; i < 3; ++i)
+        out[size_t(i)] *= perSolidAngle * crossing(l.z) * crossing(c.z) * std::exp(-varnish.opticalDepth[i] / lIn.z) * std::exp(-varnish.opticalDepth[i] / cIn.z);
+    out[3] *= (1 - partLight) * perSolidAngle * c.z / cIn.z;
+    out[4] *= (1 - partCamera) * perSolidAngle * l.z / lIn.z;
+    Factors coat{};
+    if (varnish.rough && lobe == Lobe::Smooth) {
+        const Microfacets microfacets(varnish.rough->distribution.kind, varnish.rough->distribution.alphaU, varnish.rough->distribution.alphaV);
+        const Vec3d m = (l + c).normalized();
+        const double d = microfacets.density(m), gLight = microfacets.g1(l), gCamera = microfacets.g1(c);
+        const double r = fresnelReflectance(1, l.dot(m), varnish.ior) * d * gLight * gCamera / (4 * l.z * c.z);
+        coat = {r, r, r, d * gLight / (4 * l.z), d * gCamera / (4 * c.z)};
+    } else if (!varnish.rough && lobe == Lobe::DeltaReflection) {
+        const double r = fresnelReflectance(1, (l.z + c.z) / 2, varnish.ior);
+        coat = {r, r, r, c.z, l.z};
+    }
+    for (int i = 0; i < 3; ++i) out[size_t(i)] += varnish.specularReflectance[i] * coat[size_t(i)];
+    out[3] += partLight * coat[3];
+    out[4] += partCamera * coat[4];
     return out;
 }
 
@@ -408,9 +456,7 @@ void extendByTilt(FactorRanges& ranges, const B& bsdf, Lobe lobe, const Vec3d& l
 template <class B, class... Others>
 constexpr bool kIsOneOf = (std::is_same_v<B, Others> || ...);
 template <class B>
-constexpr bool kMayBeNarrow = kIsOneOf<B, RoughConductor, RoughDielectric, RoughPlastic, Phong, Ward, Principled>;
-template <class B>
-constexpr bool kMayBeNarrow<Masked<B>> = kMayBeNarrow<B>;
+constexpr bool kMayBeNarrow = kIsOneOf<B, RoughConductor, RoughDielectric, RoughPlastic, Phong, Ward, Principled, MixtureAt, ReliefAt, VarnishAt>;
 
 /// Around the shading normal, x along the tangent where the BSDF asks for it.
 template <class B>
@@ -421,6 +467,30 @@ Vec3d localDirection(const Scene& scene, const Vertex& v, const B& bsdf, const V
         if (bsdf.anisotropic()) along = inDouble(scene.shapes[v.shape].tangent(v));
     const Vec3d x = (along - z * z.dot(along)).normalized();
     return {x.dot(w), z.cross(x).dot(w), z.dot(w)};
+}
+
+/// How far two directions miss the law of a delta lobe.
+template <class B>
+double lawError(const B& bsdf, Lobe lobe, const Vec3d& l, const Vec3d& c) {
+    if (lobe == Lobe::Smooth) return 0;
+    if (!B::hasDelta) return std::numeric_limits<double>::infinity();
+    if (lobe == Lobe::Null) return (l + c).length();
+    if (lobe == Lobe::DeltaReflection) return (Vec3d(-l.x, -l.y, l.z) - c).length();
+    if constexpr (std::is_same_v<B, Dielectric>) {
+        const double nLight = l.z > 0 ? 1 : bsdf.ior, nCamera = c.z > 0 ? 1 : bsdf.ior;
+        return std::hypot(l.x * nLight + c.x * nCamera, l.y * nLight + c.y * nCamera);
+    }
+    return std::numeric_limits<double>::infinity();
+}
+double lawError(const MixtureAt& mixture, Lobe lobe, const Vec3d& l, const Vec3d& c);
+double lawError(const ReliefAt& relief, Lobe lobe, const Vec3d& l, const Vec3d& c) {
+    return relief.nested([&](const auto& bsdf) { return lawError(bsdf, lobe, relief.turned(l), relief.turned(c)); });
+}
+double lawError(const MixtureAt& mixture, Lobe lobe, const Vec3d& l, const Vec3d& c) {
+    double least = std::numeric_limits<double>::infinity();
+    for (size_t i = 0; i < mixture.size(); ++i)
+        least = std::min(least, mixture.part(i, [&](const auto& bsdf) { return lawError(bsdf, lobe, l, c); }));
+    return least;
 }
 
 FactorRanges exactly(const Spectrum& f, double toCamera, double toLight) {
@@ -504,6 +574,12 @@ FactorRanges scatteringReference(const Scene& scene, const Vertex& v, const Vec3
                 if (errorLight == 0) extendByTilt(ranges, bsdf, v.lobe, sideLight, Vec3d(c.x, c.y, side * c.z));
         });
     }
+    // Light along the surface that meets a relief's slope: f may be as large as the cosine is small.
+    if (std::abs(cosLight) <= kCosineError)
+        forEachLayer(scene.materialAt(v).front, [&](const Coating& layer) {
+            if (!std::holds_alternative<Relief>(layer.layer)) return;
+            for (size_t i = 0; i < 3; ++i) ranges[i] = {0, std::numeric_limits<double>::max()};
+        });
     // f_s |n_s·w| = f̂_s |n_g·w| with w towards the light (Veach 1997, §5.3.2). The same normals give exactly 1.
     if (v.shadingNormal == v.normal) return ranges;
     const double low = std::max(0.0, std::abs(cosLight) - kCosineError) / (geometric + kCosineError);
@@ -538,15 +614,9 @@ FactorRanges importanceReference(const Scene& scene, const Vertex& lens, const V
 }
 
 double deltaLawError(const Scene& scene, const Vertex& v, const Vec3d& toLight, const Vec3d& toCamera) {
-    const Vec3d n = inDouble(v.shadingNormal);
-    const double cosLight = n.dot(toLight), cosCamera = n.dot(toCamera);
-    if (v.lobe == Lobe::DeltaReflection) return (n * (2 * cosLight) - toLight - toCamera).length();
-    if (v.lobe == Lobe::Smooth) return 0;
-    if (v.lobe == Lobe::Null) return (toLight + toCamera).length();
-    const auto* glass = std::get_if<Dielectric>(&scene.materialAt(v).front.bsdf);
-    if (!glass) return std::numeric_limits<double>::infinity();
-    const double nLight = cosLight > 0 ? 1 : glass->ior, nCamera = cosCamera > 0 ? 1 : glass->ior;
-    return ((toLight - n * cosLight) * nLight + (toCamera - n * cosCamera) * nCamera).length();
+    return withBsdf(scene, v, float(inDouble(v.shadingNormal).dot(toLight)), [&]<class B>(const B& bsdf, const LocalFrame&) {
+        return lawError(bsdf, v.lobe, localDirection(scene, v, bsdf, toLight), localDirection(scene, v, bsdf, toCamera));
+    });
 }
 
 }  // namespace ulam

@@ -258,7 +258,11 @@ private:
         for (int side = 0; side < 2; ++side)
             if (!path_[i - 1 + 2 * side].atInfinity())
                 tolerance += 2 * tracing_.offsetLength() * std::sqrt(inverse[side]);
-        if (const auto* glass = std::get_if<Dielectric>(&scene_.materialAt(v).front.bsdf)) tolerance *= std::max(1.0, glass->ior);
+        double ior = 1;
+        forEachBsdf(scene_.materialAt(v).front, [&ior](const Bsdf& bsdf) {
+            if (const auto* glass = std::get_if<Dielectric>(&bsdf)) ior = std::max(ior, glass->ior);
+        });
+        tolerance *= ior;
         const double error = deltaLawError(scene_, v, toLight, toCamera);
         if (error <= tolerance) return {};
         return fmt::format("{} between {} and {} misses its law by {:.3g}, more than {:.3g}", name(v.lobe),

@@ -4,7 +4,6 @@
 #include "core/scene/bsdfs/conductor.h"
 #include "core/scene/bsdfs/dielectric.h"
 #include "core/scene/bsdfs/diffuse.h"
-#include "core/scene/bsdfs/mask.h"
 #include "core/scene/bsdfs/null.h"
 #include "core/scene/bsdfs/phong.h"
 #include "core/scene/bsdfs/plastic.h"

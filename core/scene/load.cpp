@@ -12,6 +12,8 @@
 #include "core/scene/loading/sensors.h"
 #include "core/scene/loading/shapes.h"
 #include "core/scene/loading/textures.h"
+#include "core/scene/mitsuba/xml.h"
+#include "core/scene/pbrt/pbrt.h"
 
 namespace ulam {
 namespace {
@@ -41,6 +43,7 @@ private:
     JsonNode sensorNode() const;
     JsonNode resolve(const JsonNode& node) override;
     uint32_t texture(const JsonNode& node, const ParameterInfo& parameter) override;
+    bool isTexture(const JsonNode& node) const override;
     JsonNode named(const JsonNode& reference, PluginKind kind, const char* what) const;
     uint32_t material(const JsonNode& node);
     uint32_t addMaterial(Material material);
@@ -52,7 +55,7 @@ private:
     JsonNode root_;
     LoadContext context_;
     Scene scene_;
-    std::map<std::string, JsonNode> named_;
+    std::map<std::string, JsonNode> named_;                 // entries by name
     std::map<std::string, uint32_t> materials_, textures_;  // by JSON pointer of the plugin
     std::map<std::string, std::vector<Shape>> groups_;      // likewise
     std::map<std::string, PluginKind> kinds_ = [] {
@@ -103,6 +106,12 @@ JsonNode SceneBuilder::named(const JsonNode& node, PluginKind kind, const char* 
     }
     if (!isA(kind, entry->second)) id.fail(fmt::format("{} is no {}, but {}", inQuotes(entry->first), what, inQuotes(pluginName(entry->second))));
     return entry->second;
+}
+
+bool SceneBuilder::isTexture(const JsonNode& node) const {
+    if (pluginName(node) != "ref") return isA(PluginKind::Textures, node);
+    const auto entry = named_.find(node.at("id").string());
+    return entry != named_.end() && isA(PluginKind::Textures, entry->second);
 }
 
 uint32_t SceneBuilder::texture(const JsonNode& node, const ParameterInfo& parameter) {
@@ -235,10 +244,12 @@ struct SceneDescription::Content {
     std::unique_ptr<Generator> generator;
 };
 
-JsonDocument readSceneDocument(const std::filesystem::path& file, const XmlOptions& options) {
+JsonDocument readSceneDocument(const std::filesystem::path& file, const SceneFileOptions& options) {
     if (file.extension() == ".xml") return readMitsubaXml(file, options);
-    if (!options.definitions.empty() || options.lenient)
-        fail(ExitCode::Usage, "-D and --lenient are for Mitsuba's XML, and {} is none", inQuotes(file.string()));
+    if (!options.definitions.empty()) fail(ExitCode::Usage, "-D is for Mitsuba's XML, and {} is none", inQuotes(file.string()));
+    if (file.extension() == ".pbrt") return readPbrt(file, options.lenient);
+    if (options.lenient)
+        fail(ExitCode::Usage, "--lenient is for Mitsuba's XML and pbrt's scenes, and {} is neither", inQuotes(file.string()));
     return JsonDocument::fromFile(file);
 }
 

@@ -2,8 +2,8 @@
 // From a scene dictionary (Mitsuba 3's vocabulary as JSON) to a Scene. One loader for every source of scenes.
 
 #include "core/config/json.h"
-#include "core/scene/mitsuba/xml.h"
 #include "core/scene/generator.h"
+#include "core/scene/loading/file_options.h"
 #include "core/scene/scene.h"
 
 #include <filesystem>
@@ -12,8 +12,9 @@
 
 namespace ulam {
 
-/// The scene dictionary in a file: JSON, or Mitsuba's XML where the name ends in .xml.
-JsonDocument readSceneDocument(const std::filesystem::path& file, const XmlOptions& options = {});
+/// The scene dictionary in a file: Mitsuba's XML where the name ends in .xml, a scene of pbrt-v4 where it ends in .pbrt,
+/// else JSON.
+JsonDocument readSceneDocument(const std::filesystem::path& file, const SceneFileOptions& options = {});
 
 /// A scene dictionary with the place it came from. A generator is expanded on construction.
 class SceneDescription {

@@ -120,7 +120,8 @@ Vec2f Shape::texcoord(const Vertex& v) const {
     return std::visit([&](const auto& g) { return texcoordOf(g, v); }, geometry);
 }
 
-Tangents Shape::tangents(const Vertex& v) const {
+// Out of line: it is rarely needed, and makes what is needed at every vertex too large to be inlined.
+[[gnu::noinline]] Tangents Shape::tangents(const Vertex& v) const {
     return std::visit([&](const auto& g) { return tangentsOf(g, v); }, geometry);
 }
 

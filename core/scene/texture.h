@@ -20,6 +20,10 @@ decltype(auto) dispatch(const Texture& texture, Function&& function) {
 inline Spectrum textureColor(const Texture& texture, const Vec2f& uv) {
     return dispatch(texture, [&](const auto& t) { return t.color(uv); });
 }
+/// ∂/∂u and ∂/∂v of textureValue.
+inline Vec2f textureSlope(const Texture& texture, const Vec2f& uv) {
+    return dispatch(texture, [&](const auto& t) { return t.slope(uv); });
+}
 inline double textureValue(const Texture& texture, const Vec2f& uv) {
     return dispatch(texture, [&](const auto& t) { return t.value(uv); });
 }

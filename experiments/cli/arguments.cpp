@@ -46,16 +46,16 @@ ArgumentDocument documentArgument(const std::string& argument) {
 
 }  // namespace
 
-ArgumentDocument sceneArgument(const std::string& argument, const XmlOptions& options) {
+ArgumentDocument sceneArgument(const std::string& argument, const SceneFileOptions& options) {
     const fs::path path = argument;
-    if (!argument.starts_with("{") && (looksLikeFile(argument) || path.extension() == ".xml"))
+    if (!argument.starts_with("{") && (looksLikeFile(argument) || path.extension() == ".xml" || path.extension() == ".pbrt"))
         return {readSceneDocument(path, options), path.parent_path()};
-    if (!options.definitions.empty() || options.lenient) fail(ExitCode::Usage, "-D and --lenient are for scenes in Mitsuba's XML");
+    if (!options.definitions.empty() || options.lenient) fail(ExitCode::Usage, "-D and --lenient are for scenes in files of other renderers");
     return documentArgument<Generator>(argument);
 }
 
-std::shared_ptr<XmlOptions> addXmlOptions(CLI::App& command) {
-    auto options = std::make_shared<XmlOptions>();
+std::shared_ptr<SceneFileOptions> addSceneFileOptions(CLI::App& command) {
+    auto options = std::make_shared<SceneFileOptions>();
     const auto parse = [options](const std::vector<std::string>& assignments) {
         for (const std::string& assignment : assignments) {
             const auto [name, value] = splitAssignment(assignment);
@@ -66,7 +66,7 @@ std::shared_ptr<XmlOptions> addXmlOptions(CLI::App& command) {
         ->type_name("NAME=VALUE")
         ->take_all()
         ->allow_extra_args(false);
-    command.add_flag("--lenient", options->lenient, "replace unknown plugins in Mitsuba's XML: magenta BSDFs and textures, others left out; results say so");
+    command.add_flag("--lenient", options->lenient, "replace unknown plugins in Mitsuba's XML or a .pbrt file: magenta BSDFs and textures, others left out; results say so");
     return options;
 }
 

@@ -17,10 +17,10 @@ struct ArgumentDocument {
     std::filesystem::path folder;
 };
 
-/// SCENE: a JSON or XML file, a generator's name, or JSON itself.
-ArgumentDocument sceneArgument(const std::string& argument, const XmlOptions& options = {});
+/// SCENE: a JSON, XML or pbrt file, a generator's name, or JSON itself.
+ArgumentDocument sceneArgument(const std::string& argument, const SceneFileOptions& options = {});
 /// `-D NAME=VALUE`, repeatable, and `--lenient`.
-std::shared_ptr<XmlOptions> addXmlOptions(CLI::App& command);
+std::shared_ptr<SceneFileOptions> addSceneFileOptions(CLI::App& command);
 /// A sampler's name, a JSON file with its parameters, or JSON itself.
 ArgumentDocument samplerArgument(const std::string& argument);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/base/error.h"
 #include "core/config/suggest.h"
 #include "core/image/metrics.h"
 #include "core/mcmc/target.h"
@@ -9,6 +10,7 @@
 #include "core/scene/plugins.h"
 #include "experiments/cli/arguments.h"
 #include "experiments/cli/commands.h"
+#include "experiments/cli/vocabulary.h"
 
 namespace ulam {
 namespace {
@@ -102,7 +104,15 @@ void printItem(const Item& item) {
     }
 }
 
+/// All of a scene's plugins on one page.
+constexpr const char* kVocabulary = "vocabulary";
+
 void list(const std::string& plural, const std::string& name, bool json) {
+    if (plural == kVocabulary) {
+        if (json || !name.empty()) fail(ExitCode::Usage, "ulam list vocabulary is a page in Markdown: it takes no name and no --json");
+        fmt::print("{}", sceneVocabulary());
+        return;
+    }
     const Kind& kind =
         *std::find_if(std::begin(kKinds), std::end(kKinds), [&](const Kind& k) { return k.plural == plural; });
     std::vector<Item> items = kind.items();
@@ -136,6 +146,7 @@ void addListCommand(CLI::App& app) {
     CLI::App& command = *app.add_subcommand("list", "what there is: names, parameters, defaults, units");
     std::vector<std::string> kinds;
     for (const Kind& kind : kKinds) kinds.emplace_back(kind.plural);
+    kinds.emplace_back(kVocabulary);
     command.add_option("kind", a->kind, "")->required()->check(CLI::IsMember(kinds));
     command.add_option("name", a->name, "one of them, with its parameters");
     command.add_flag("--json", a->json, "as JSON");

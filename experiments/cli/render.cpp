@@ -20,7 +20,7 @@ struct RenderArguments {
     std::optional<double> seconds, spp, mutations, rays;
     std::shared_ptr<std::uint64_t> seed;
     std::shared_ptr<int> threads;
-    std::shared_ptr<XmlOptions> xml;
+    std::shared_ptr<SceneFileOptions> xml;
     bool quiet = false;
 };
 
@@ -125,8 +125,8 @@ void renderImage(const RenderArguments& a) {
 void addRenderCommand(CLI::App& app) {
     auto a = std::make_shared<RenderArguments>();
     CLI::App& command = *app.add_subcommand("render", "render one image");
-    command.add_option("scene", a->scene, "JSON or XML file, generator (see: ulam list generators), or JSON")->required();
-    a->xml = addXmlOptions(command);
+    command.add_option("scene", a->scene, "JSON, XML or pbrt file, generator (see: ulam list generators), or JSON")->required();
+    a->xml = addSceneFileOptions(command);
     command.add_option("--sampler", a->sampler, "name (see: ulam list samplers), JSON file, or JSON")->required();
     command
         .add_option("--set", a->assignments, "sampler.KEY=VALUE, scene.KEY=VALUE or scene.film.KEY=VALUE (repeatable)")

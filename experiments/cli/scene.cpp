@@ -1,11 +1,12 @@
 // ulam scene: what is in a scene; the scene in another renderer's language.
 
+#include <array>
 #include <chrono>
 
 #include "core/base/error.h"
 #include "core/config/suggest.h"
-#include "core/scene/export/export_folder.h"
-#include "core/scene/export/mitsuba3.h"
+#include "core/scene/export/mitsuba.h"
+#include "core/scene/export/pbrt4.h"
 #include "experiments/cli/arguments.h"
 #include "experiments/cli/commands.h"
 
@@ -16,14 +17,27 @@ struct SceneArguments {
     std::string scene;
     std::vector<std::string> assignments, target;
     bool info = false, json = false;
-    std::shared_ptr<XmlOptions> xml;
+    std::shared_ptr<SceneFileOptions> xml;
 };
 
+struct Exporter {
+    const char* format;
+    const char* sceneFile;
+    std::vector<std::string> (*write)(const SceneDescription&, const std::filesystem::path&);
+};
+constexpr std::array kExporters{Exporter{"mitsuba3", "scene.xml", exportMitsuba3}, Exporter{"mitsuba06", "scene.xml", exportMitsuba06},
+                                Exporter{"pbrt4", "scene.pbrt", exportPbrt4}};
+
 void exportScene(const SceneDescription& description, const std::string& format, const std::string& folder) {
-    if (format != "mitsuba3") fail(ExitCode::Usage, "expected --export mitsuba3 DIR, found {}", inQuotes(format));
-    for (const std::string& leftOut : exportMitsuba3(description, folder))
-        fmt::print(stderr, "left out: {}\n", leftOut);
-    fmt::print("{}\n", (std::filesystem::path(folder) / ExportFolder::sceneFile).string());
+    std::vector<std::string> formats;
+    for (const Exporter& exporter : kExporters) {
+        formats.emplace_back(exporter.format);
+        if (format != exporter.format) continue;
+        for (const std::string& leftOut : exporter.write(description, folder)) fmt::print(stderr, "left out: {}\n", leftOut);
+        fmt::print("{}\n", (std::filesystem::path(folder) / exporter.sceneFile).string());
+        return;
+    }
+    fail(ExitCode::Usage, "expected --export FORMAT DIR with a format of {}, found {}", listInQuotes(formats), inQuotes(format));
 }
 
 void printScene(const SceneDescription& description, const SceneArguments& a) {
@@ -67,7 +81,7 @@ void printScene(const SceneDescription& description, const SceneArguments& a) {
 
 void runScene(const SceneArguments& a) {
     if (a.info == !a.target.empty())
-        fail(ExitCode::Usage, "expected ulam scene SCENE --info, or ulam scene SCENE --export mitsuba3 DIR");
+        fail(ExitCode::Usage, "expected ulam scene SCENE --info, or ulam scene SCENE --export FORMAT DIR");
     auto [document, folder] = sceneArgument(a.scene, *a.xml);
     document.applyOverrides(a.assignments);
     const SceneDescription description = SceneDescription::fromNode(document.root(), folder);
@@ -82,16 +96,16 @@ void runScene(const SceneArguments& a) {
 void addSceneCommand(CLI::App& app) {
     auto a = std::make_shared<SceneArguments>();
     CLI::App& command = *app.add_subcommand("scene", "what is in a scene; write it for another renderer");
-    command.add_option("scene", a->scene, "JSON or XML file, generator (see: ulam list generators), or JSON")->required();
-    a->xml = addXmlOptions(command);
+    command.add_option("scene", a->scene, "JSON, XML or pbrt file, generator (see: ulam list generators), or JSON")->required();
+    a->xml = addSceneFileOptions(command);
     command.add_option("--set", a->assignments, "KEY=VALUE in the scene's dictionary (repeatable)")
         ->type_name("PATH=VALUE")
         ->take_all()
         ->allow_extra_args(false);
     command.add_flag("--info", a->info, "count what is in it");
     command.add_flag("--json", a->json, "as JSON, with the expanded dictionary");
-    command.add_option("--export", a->target, "write the scene for Mitsuba 3 into a folder")
-        ->type_name("mitsuba3 DIR")
+    command.add_option("--export", a->target, "write the scene for Mitsuba 3, Mitsuba 0.6 or pbrt-v4 into a folder")
+        ->type_name("mitsuba3|mitsuba06|pbrt4 DIR")
         ->expected(2);
     command.callback([a] { runScene(*a); });
 }

@@ -65,6 +65,7 @@ struct GridOfHolesParameters {
 /// A generator's parameters stand outside of any scene.
 struct NoScene : PluginResolver {
     JsonNode resolve(const JsonNode& node) override { return node; }
+    bool isTexture(const JsonNode&) const override { return false; }
     uint32_t texture(const JsonNode& node, const ParameterInfo&) override { node.fail("a generator's BSDF takes no texture"); }
 };
 
@@ -72,8 +73,9 @@ struct NoScene : PluginResolver {
 std::optional<Spectrum> diffuseReflectance(const JsonNode& bsdf) {
     NoScene none;
     const Material material = readMaterial(bsdf, none);
-    const auto* plain = material.masked ? nullptr : std::get_if<Diffuse>(&material.front.bsdf);
-    return plain ? std::optional(plain->reflectance) : std::nullopt;
+    const auto* plain = std::get_if<TexturedBsdf>(&material.front.layer);
+    const auto* diffuse = plain ? std::get_if<Diffuse>(&plain->bsdf) : nullptr;
+    return diffuse ? std::optional(diffuse->reflectance) : std::nullopt;
 }
 
 class GridOfHoles : public Generator {

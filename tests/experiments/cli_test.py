@@ -67,6 +67,11 @@ class CliTest(unittest.TestCase):
 
 
 class Usage(CliTest):
+    def test_the_page_of_the_vocabulary_is_the_programs(self):
+        page = pathlib.Path("docs/vocabulary.md").read_text()
+        printed = subprocess.run([ULAM, "list", "vocabulary"], capture_output=True, text=True, check=True).stdout
+        self.assertEqual(page.split("\n", 6)[6], printed, "make it again: see the head of docs/vocabulary.md")
+
     def test_a_time_limited_render_can_be_repeated_as_work(self):
         for sampler in ("bdpt", "pssmlt", "mlt"):
             with self.subTest(sampler=sampler):
@@ -207,6 +212,10 @@ class Describe(CliTest):
         self.write("out/mine", {})
         self.assertIn("out holds mine", self.ulam("scene", "scene.json", "--export", "mitsuba3", "out", expect=6).stderr)
         self.ulam("scene", "scene.json", "--export", "mitsuba3", "scene.json/out", expect=6)
+        self.assertEqual(self.ulam("scene", "scene.json", "--export", "pbrt4", "pbrt").stdout, "pbrt/scene.pbrt\n")
+        read = json.loads(self.ulam("scene", "pbrt/scene.pbrt", "--info", "--json").stdout)
+        self.assertEqual((read["shapes"], read["emitters"]), (2, 1))
+        self.ulam("scene", "pbrt/scene.pbrt", "-D", "a=1", "--info", expect=2)
 
     def test_compare(self):
         self.render()

@@ -172,6 +172,25 @@ Json sunAndSky() {
     return scene;
 }
 
+/// Mixtures and masks, also of each other and of what is specular; surfaces with bumps and with normals of a picture.
+Json layers() {
+    Json scene = room();
+    scene["lamp"] = lamp();
+    const Json heights = {{"type", "bitmap"}, {"filename", "sky.exr"}};
+    const Json normals = {{"type", "bitmap"}, {"filename", "normals.exr"}, {"raw", true}};
+    const Json glass = {{"type", "dielectric"}}, metal = {{"type", "roughconductor"}, {"alpha", 0.2}};
+    scene["floor"]["bsdf"] = {{"type", "twosided"}, {"inside", {{"type", "bumpmap"}, {"scale", 0.1}, {"heights", heights}, {"inside", diffuse(0.6)}}}};
+    scene["veil"] = ball({-0.55, 0.35, -0.3}, 0.35, {{"type", "blendbsdf"}, {"weight", 0.4}, {"a", glass}, {"b", {{"type", "plastic"}}}});
+    scene["holes"] = ball({0.5, 0.35, 0.5}, 0.35, {{"type", "mask"}, {"opacity", {{"type", "checkerboard"}, {"color0", 0.3}, {"color1", 0.9}}}, {"inside", {{"type", "thindielectric"}}}});
+    scene["three"] = ball({0.5, 0.4, -0.4}, 0.35, {{"type", "mixturebsdf"}, {"weights", {0.3, 0.4, 0.2}}, {"a", metal}, {"b", {{"type", "conductor"}}}, {"c", diffuse(0.5)}});
+    scene["waves"] = ball({-0.5, 1.1, -0.4}, 0.3, {{"type", "bumpmap"}, {"scale", 0.2}, {"heights", heights}, {"inside", glass}});
+    scene["lacquer"] = ball({-0.1, 0.3, 0.8}, 0.25, {{"type", "coating"}, {"thickness", 0.5}, {"sigma_a", {0.1, 0.4, 0.8}}, {"inside", {{"type", "blendbsdf"}, {"a", {{"type", "conductor"}}}, {"b", diffuse(0.8)}}}});
+    scene["satin"] = ball({-0.1, 1.5, -0.5}, 0.25, {{"type", "roughcoating"}, {"alpha", 0.2}, {"inside", {{"type", "blendbsdf"}, {"a", metal}, {"b", {{"type", "conductor"}}}}}});
+    scene["dents"] = ball({0.3, 1.2, 0.7}, 0.3, {{"type", "blendbsdf"}, {"weight", heights}, {"a", {{"type", "normalmap"}, {"normalmap", normals}, {"inside", {{"type", "roughplastic"}}}}},
+                                                 {"b", {{"type", "mask"}, {"opacity", 0.7}, {"inside", metal}}}});
+    return scene;
+}
+
 /// Two groups, placed by turned, stretched, mirrored and sheared instances: one of meshes (smooth and textured), one of what
 /// has to stay round.
 Json instances() {
@@ -198,7 +217,7 @@ Json instances() {
     return scene;
 }
 
-/// Holds sky.exr, a small picture.
+/// Holds sky.exr, a small picture, and normals.exr, which holds normals.
 const std::filesystem::path& sceneFolder() {
     static const struct Folder {
         std::filesystem::path path = std::filesystem::temp_directory_path() / fmt::format("ulam_path_scenes_{}", getpid());
@@ -209,6 +228,9 @@ const std::filesystem::path& sceneFolder() {
             for (Rgb& pixel : sky.pixels)
                 for (int c = 0; c < 3; ++c) pixel[c] = float(0.9 * random() * random());
             writeExr((path / "sky.exr").string(), sky);
+            Image normals(6, 4);
+            for (Rgb& pixel : normals.pixels) pixel = Rgb(float(0.3 + 0.4 * random()), float(0.3 + 0.4 * random()), float(0.8 + 0.2 * random()));
+            writeExr((path / "normals.exr").string(), normals);
         }
         ~Folder() {
             std::error_code ignored;
@@ -230,6 +252,7 @@ const std::vector<NamedScene>& pathScenes() {
         {"point_light", pointLight(), true, false}, {"environment", environment(), true, true},
         {"many_lights", manyLights(), true, true},  {"shading_normals", shadingNormals(), true, false},
         {"rough", roughThings(), true, false},      {"thin_lens", thinLens(), true, false},     {"sun_and_sky", sunAndSky(), true, true},
+        {"layers", layers(), true, false},
         {"instances", instances(), true, false},
     };
     return scenes;

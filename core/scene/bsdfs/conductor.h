@@ -11,7 +11,7 @@ struct Conductor {
     using Parameters = MetalParameters;
     explicit Conductor(const Parameters& p) : eta(p.eta), k(p.k), specularReflectance(p.specularReflectance) {}
 
-    static constexpr bool hasDelta = true, hasSmooth = false, hasNull = false, transmits = false;
+    static constexpr bool hasDelta = true, hasSmooth = false, transmits = false;
     template <class V>
     static void textured(V& v) {
         v("eta", &Conductor::eta);
@@ -33,8 +33,8 @@ struct Conductor {
     }
 
     template <class T>
-    T probability(const Direction<T>&, const Direction<T>&, Lobe) const {
-        return T(1);
+    T probability(const Direction<T>&, const Direction<T>&, Lobe lobe) const {
+        return T(lobe == Lobe::DeltaReflection ? 1 : 0);
     }
 
     std::optional<ScatterSample> sampleLobe(const Vec3f& from, Lobe lobe, const Block&) const {

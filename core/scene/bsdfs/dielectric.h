@@ -15,7 +15,7 @@ struct Dielectric {
           specularReflectance(p.specularReflectance),
           specularTransmittance(p.specularTransmittance) {}
 
-    static constexpr bool hasDelta = true, hasSmooth = false, hasNull = false, transmits = true;
+    static constexpr bool hasDelta = true, hasSmooth = false, transmits = true;
     template <class V>
     static void textured(V& v) {
         v("specular_reflectance", &Dielectric::specularReflectance);
@@ -42,7 +42,7 @@ struct Dielectric {
     template <class T>
     T probability(const Direction<T>& from, const Direction<T>& to, Lobe lobe) const {
         const T r = reflectance(from.z, to.z);
-        return lobe == Lobe::DeltaReflection ? r : T(1) - r;
+        return lobe == Lobe::DeltaReflection ? r : T(lobe == Lobe::DeltaTransmission ? 1 : 0) * (T(1) - r);
     }
 
     std::optional<ScatterSample> sampleLobe(const Vec3f& from, Lobe lobe, const Block&) const {

@@ -8,13 +8,13 @@ namespace ulam {
 /// Directions with density cosθ/π on the side of the shading normal.
 struct CosineSampling {
     template <class T>
-    T pdf(const Direction<T>& from, const Direction<T>& to, Lobe) const {
-        return from.z > 0 ? cosineHemispherePdf(to.z) : T(0);
+    T pdf(const Direction<T>& from, const Direction<T>& to, Lobe lobe) const {
+        return lobe == Lobe::Smooth && from.z > 0 ? cosineHemispherePdf(to.z) : T(0);
     }
 
     template <class T>
-    T probability(const Direction<T>&, const Direction<T>&, Lobe) const {
-        return T(1);
+    T probability(const Direction<T>&, const Direction<T>&, Lobe lobe) const {
+        return T(lobe == Lobe::Smooth ? 1 : 0);
     }
 
     std::optional<ScatterSample> sampleLobe(const Vec3f& from, Lobe lobe, const Block& u) const {
@@ -42,7 +42,7 @@ struct Diffuse : CosineSampling {
     };
     explicit Diffuse(const Parameters& p) : reflectance(p.reflectance) {}
 
-    static constexpr bool hasDelta = false, hasSmooth = true, hasNull = false, transmits = false;
+    static constexpr bool hasDelta = false, hasSmooth = true, transmits = false;
     template <class V>
     static void textured(V& v) {
         v("reflectance", &Diffuse::reflectance);
@@ -51,8 +51,8 @@ struct Diffuse : CosineSampling {
     double albedo() const { return maxComponent(reflectance); }
 
     template <class T>
-    Color<T> eval(const Direction<T>& toLight, const Direction<T>& toCamera, Lobe) const {
-        if (!(toLight.z > 0 && toCamera.z > 0)) return Color<T>(T(0));
+    Color<T> eval(const Direction<T>& toLight, const Direction<T>& toCamera, Lobe lobe) const {
+        if (lobe != Lobe::Smooth || !(toLight.z > 0 && toCamera.z > 0)) return Color<T>(T(0));
         return Color<T>(T(reflectance.x), T(reflectance.y), T(reflectance.z)) * T(1 / kPi);
     }
 

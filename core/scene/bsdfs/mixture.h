@@ -1,11 +1,44 @@
 #pragma once
-// One smooth lobe made of parts that are sampled apart: one number chooses the part.
+// What is made of parts that are sampled apart: one number chooses the part.
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <span>
 
 namespace ulam {
+
+/// A part, and where in its share of the number that chose it: uniform in [0,1].
+struct ChosenPart {
+    size_t index;
+    double within;
+};
+/// The part that `at`, from 0 to the weights' sum, falls into. None where all weights are 0.
+inline std::optional<ChosenPart> partAt(std::span<const double> weights, double at) {
+    std::optional<ChosenPart> part;
+    for (size_t i = 0; i < weights.size(); ++i) {
+        if (!(weights[i] > 0)) continue;
+        part = ChosenPart{i, std::min(1.0, at / weights[i])};
+        if (at < weights[i]) break;
+        at -= weights[i];
+    }
+    return part;
+}
+
+/// The part that u in [0,1) chooses with probabilities as these weights.
+inline std::optional<ChosenPart> choosePart(std::span<const double> weights, double u) {
+    double total = 0;
+    for (const double weight : weights) total += weight;
+    return partAt(weights, u * total);
+}
+
+/// The number that partAt() takes to this part.
+inline double numberOf(std::span<const double> weights, const ChosenPart& part) {
+    double start = 0;
+    for (size_t i = 0; i < part.index; ++i) start += weights[i];
+    return start + weights[part.index] * part.within;
+}
 
 /// The part that u chooses with these probabilities, which sum to 1.
 template <size_t N>
@@ -19,20 +52,10 @@ size_t chosenPart(const std::array<double, N>& probabilities, double u) {
 /// number that chooses the same part: it has the law of u given the direction. None where all densities are 0.
 template <size_t N>
 std::optional<size_t> invertPart(const std::array<double, N>& probabilities, const std::array<double, N>& densities, double& u) {
-    double total = 0, start = 0;
-    for (const double density : densities) total += density;
-    double at = u * total;
-    std::optional<size_t> part;
-    for (size_t i = 0; i < N; ++i) {
-        if (densities[i] > 0) {
-            part = i;
-            u = start + probabilities[i] * std::min(1.0, at / densities[i]);
-            if (at < densities[i]) break;
-            at -= densities[i];
-        }
-        start += probabilities[i];
-    }
-    return part;
+    const auto part = choosePart(densities, u);
+    if (!part) return std::nullopt;
+    u = numberOf(probabilities, *part);
+    return part->index;
 }
 
 }  // namespace ulam

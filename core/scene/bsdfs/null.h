@@ -12,7 +12,7 @@ struct Null {
     };
     explicit Null(const Parameters&) {}
 
-    static constexpr bool hasDelta = true, hasSmooth = false, hasNull = true, transmits = true;
+    static constexpr bool hasDelta = true, hasSmooth = false, transmits = true;
 
     template <class V>
     static void textured(V&) {}
@@ -31,8 +31,8 @@ struct Null {
     }
 
     template <class T>
-    T probability(const Direction<T>&, const Direction<T>&, Lobe) const {
-        return T(1);
+    T probability(const Direction<T>&, const Direction<T>&, Lobe lobe) const {
+        return T(lobe == Lobe::Null ? 1 : 0);
     }
 
     std::optional<ScatterSample> sampleLobe(const Vec3f& from, Lobe lobe, const Block&) const {

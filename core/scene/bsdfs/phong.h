@@ -24,7 +24,7 @@ struct Phong {
     explicit Phong(const Parameters& p)
         : diffuseReflectance(p.diffuse("phong")), specularReflectance(p.specularReflectance), exponent(p.exponent) {}
 
-    static constexpr bool hasDelta = false, hasSmooth = true, hasNull = false, transmits = false;
+    static constexpr bool hasDelta = false, hasSmooth = true, transmits = false;
 
     template <class V>
     static void textured(V& v) {
@@ -50,8 +50,8 @@ struct Phong {
     }
 
     template <class T>
-    T probability(const Direction<T>&, const Direction<T>&, Lobe) const {
-        return T(1);
+    T probability(const Direction<T>&, const Direction<T>&, Lobe lobe) const {
+        return T(lobe == Lobe::Smooth ? 1 : 0);
     }
 
     std::optional<ScatterSample> sampleLobe(const Vec3f& from, Lobe lobe, const Block& u) const {

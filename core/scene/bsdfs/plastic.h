@@ -15,7 +15,7 @@ struct Plastic {
           diffuseReflectance(p.diffuseReflectance),
           specularReflectance(p.specularReflectance) {}
 
-    static constexpr bool hasDelta = true, hasSmooth = true, hasNull = false, transmits = false;
+    static constexpr bool hasDelta = true, hasSmooth = true, transmits = false;
 
     template <class V>
     static void textured(V& v) {
@@ -45,6 +45,7 @@ struct Plastic {
 
     template <class T>
     T probability(const Direction<T>& from, const Direction<T>&, Lobe lobe) const {
+        if (!(from.z > 0)) return T(0);
         if (lobe == Lobe::DeltaReflection) return coatShare(from.z);
         return lobe == Lobe::Smooth ? T(1) - coatShare(from.z) : T(0);
     }

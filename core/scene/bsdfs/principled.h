@@ -53,7 +53,7 @@ struct Principled {
           specTint(p.specTint), sheen(p.sheen), sheenTint(p.sheenTint), flatness(p.flatness), clearcoat(p.clearcoat),
           clearcoatGloss(p.clearcoatGloss), refraction(p.specTrans), transmits(p.specTrans > 0) {}
 
-    static constexpr bool hasDelta = false, hasSmooth = true, hasNull = false;
+    static constexpr bool hasDelta = false, hasSmooth = true;
     bool anisotropic() const { return anisotropy > 0; }
 
     template <class V>
@@ -79,8 +79,8 @@ struct Principled {
     template <class T>
     T pdf(const Direction<T>& from, const Direction<T>& to, Lobe lobe) const;
     template <class T>
-    T probability(const Direction<T>&, const Direction<T>&, Lobe) const {
-        return T(1);
+    T probability(const Direction<T>&, const Direction<T>&, Lobe lobe) const {
+        return T(lobe == Lobe::Smooth ? 1 : 0);
     }
 
     std::optional<ScatterSample> sampleLobe(const Vec3f& from, Lobe lobe, const Block& u) const;

@@ -25,7 +25,7 @@ struct RoughConductor {
           alphaU(p.microfacets.alongU()),
           alphaV(p.microfacets.alongV()) {}
 
-    static constexpr bool hasDelta = false, hasSmooth = true, hasNull = false, transmits = false;
+    static constexpr bool hasDelta = false, hasSmooth = true, transmits = false;
     bool anisotropic() const { return alphaU != alphaV; }
 
     template <class V>
@@ -56,8 +56,8 @@ struct RoughConductor {
     }
 
     template <class T>
-    T probability(const Direction<T>&, const Direction<T>&, Lobe) const {
-        return T(1);
+    T probability(const Direction<T>&, const Direction<T>&, Lobe lobe) const {
+        return T(lobe == Lobe::Smooth ? 1 : 0);
     }
 
     std::optional<ScatterSample> sampleLobe(const Vec3f& from, Lobe lobe, const Block& u) const {

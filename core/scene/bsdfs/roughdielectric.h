@@ -33,7 +33,7 @@ struct RoughDielectric {
           alphaU(p.microfacets.alongU()),
           alphaV(p.microfacets.alongV()) {}
 
-    static constexpr bool hasDelta = false, hasSmooth = true, hasNull = false, transmits = true;
+    static constexpr bool hasDelta = false, hasSmooth = true, transmits = true;
     bool anisotropic() const { return alphaU != alphaV; }
 
     template <class V>
@@ -69,8 +69,8 @@ struct RoughDielectric {
     }
 
     template <class T>
-    T probability(const Direction<T>&, const Direction<T>&, Lobe) const {
-        return T(1);
+    T probability(const Direction<T>&, const Direction<T>&, Lobe lobe) const {
+        return T(lobe == Lobe::Smooth ? 1 : 0);
     }
 
     std::optional<ScatterSample> sampleLobe(const Vec3f& from, Lobe lobe, const Block& u) const {

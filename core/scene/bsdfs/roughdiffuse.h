@@ -24,7 +24,7 @@ struct RoughDiffuse : CosineSampling {
     };
     explicit RoughDiffuse(const Parameters& p) : reflectance(p.reflectance), alpha(p.alpha), qualitative(p.useFastApprox) {}
 
-    static constexpr bool hasDelta = false, hasSmooth = true, hasNull = false, transmits = false;
+    static constexpr bool hasDelta = false, hasSmooth = true, transmits = false;
 
     template <class V>
     static void textured(V& v) {
@@ -35,8 +35,8 @@ struct RoughDiffuse : CosineSampling {
     double albedo() const { return 1.06 * maxComponent(reflectance); }
 
     template <class T>
-    Color<T> eval(const Direction<T>& toLight, const Direction<T>& toCamera, Lobe) const {
-        if (!(toLight.z > 0 && toCamera.z > 0)) return Color<T>(T(0));
+    Color<T> eval(const Direction<T>& toLight, const Direction<T>& toCamera, Lobe lobe) const {
+        if (lobe != Lobe::Smooth || !(toLight.z > 0 && toCamera.z > 0)) return Color<T>(T(0));
         const Geometry<T> g(toLight, toCamera);
         const double s2 = 0.5 * alpha * alpha, c1 = 1 - 0.5 * s2 / (s2 + 0.33), c2 = 0.45 * s2 / (s2 + 0.09);
         if (qualitative) {

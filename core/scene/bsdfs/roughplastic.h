@@ -81,7 +81,7 @@ struct RoughPlastic {
           distribution(p.microfacets()),
           transmittance(distribution, p.ior()) {}
 
-    static constexpr bool hasDelta = false, hasSmooth = true, hasNull = false, transmits = false;
+    static constexpr bool hasDelta = false, hasSmooth = true, transmits = false;
 
     template <class V>
     static void textured(V& v) {
@@ -108,8 +108,8 @@ struct RoughPlastic {
     }
 
     template <class T>
-    T probability(const Direction<T>&, const Direction<T>&, Lobe) const {
-        return T(1);
+    T probability(const Direction<T>&, const Direction<T>&, Lobe lobe) const {
+        return T(lobe == Lobe::Smooth ? 1 : 0);
     }
 
     std::optional<ScatterSample> sampleLobe(const Vec3f& from, Lobe lobe, const Block& u) const {

@@ -12,12 +12,13 @@
 //                                   give the same `to` (u[2] chooses a lobe, or a part of a mixture): random numbers in u
 //                                   come back with the law of u given `to`
 //   albedo()                        bounds the reflected fraction; the Russian roulette's probability of going on
-//   hasDelta, hasSmooth, hasNull    which lobes there are; hasNull where one of the delta lobes may be Lobe::Null
+//   hasDelta, hasSmooth             which lobes there may be
 //   transmits                       light reaches the other side, straight on or refracted
 //   smoothShare(from)               probability that sample() chooses the smooth lobe, where there are delta lobes too
 //   anisotropic()                   whether the azimuth matters (absent: it does not); x then is along ∂p/∂u
 //   textured(visit)                 names the members that a texture may stand for; nothing derived from them is kept, and
 //                                   values out of range are clamped on use. A name listed twice stands for both members
+// All of them are 0 for lobes that the BSDF has not, since it may be part of a mixture.
 // For delta lobes eval and pdf are the factors of δ_σ (lobe.h).
 
 #include "core/base/random.h"

@@ -16,7 +16,7 @@ struct ThinDielectric {
           specularReflectance(p.specularReflectance),
           specularTransmittance(p.specularTransmittance) {}
 
-    static constexpr bool hasDelta = true, hasSmooth = false, hasNull = true, transmits = true;
+    static constexpr bool hasDelta = true, hasSmooth = false, transmits = true;
 
     template <class V>
     static void textured(V& v) {

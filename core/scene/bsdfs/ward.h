@@ -43,7 +43,7 @@ struct Ward {
           alphaU(p.alphaU > 0 ? p.alphaU : p.alpha),
           alphaV(p.alphaV > 0 ? p.alphaV : p.alpha) {}
 
-    static constexpr bool hasDelta = false, hasSmooth = true, hasNull = false, transmits = false;
+    static constexpr bool hasDelta = false, hasSmooth = true, transmits = false;
     bool anisotropic() const { return alphaU != alphaV; }
 
     template <class V>
@@ -85,8 +85,8 @@ struct Ward {
     }
 
     template <class T>
-    T probability(const Direction<T>&, const Direction<T>&, Lobe) const {
-        return T(1);
+    T probability(const Direction<T>&, const Direction<T>&, Lobe lobe) const {
+        return T(lobe == Lobe::Smooth ? 1 : 0);
     }
 
     std::optional<ScatterSample> sampleLobe(const Vec3f& from, Lobe lobe, const Block& u) const {

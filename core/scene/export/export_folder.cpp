@@ -21,13 +21,13 @@ void makeFolder(const fs::path& folder) {
 }
 
 /// Fails where a folder holds what no export wrote.
-void checkReplaceable(const fs::path& folder) {
-    const fs::path scene = folder / ExportFolder::sceneFile;
+void checkReplaceable(const fs::path& folder, const ExportFormat& format) {
+    const fs::path scene = folder / format.sceneFile;
     const std::string text = fs::is_regular_file(scene) ? readFile(scene) : "";
-    const bool isExport = text.find(ExportFolder::mark) != std::string::npos;
+    const bool isExport = text.find(format.mark) != std::string::npos;
     for (const auto& entry : fs::recursive_directory_iterator(folder)) {
         const std::string name = entry.path().lexically_relative(folder).generic_string();
-        const bool known = fs::is_directory(entry.symlink_status()) || name == ExportFolder::sceneFile ||
+        const bool known = fs::is_directory(entry.symlink_status()) || name == format.sceneFile ||
                            text.find(fmt::format("\"{}\"", name)) != std::string::npos;
         if (!isExport || !known)
             fail(ExitCode::CannotWrite, "{} holds {}, which no earlier export wrote; name an empty or a new folder",
@@ -37,14 +37,14 @@ void checkReplaceable(const fs::path& folder) {
 
 }  // namespace
 
-ExportFolder::ExportFolder(const fs::path& place) {
+ExportFolder::ExportFolder(const fs::path& place, const ExportFormat& format) : format_(format) {
     std::error_code error;
     place_ = fs::weakly_canonical(fs::absolute(place), error);
     if (error) failToWrite(place, error);
     if (!place_.has_filename()) place_ = place_.parent_path();
     if (fs::exists(place_)) {
         if (!fs::is_directory(place_)) failToWrite(place, std::make_error_code(std::errc::not_a_directory));
-        checkReplaceable(place_);
+        checkReplaceable(place_, format_);
     }
     made_ = place_;
     made_ += fmt::format(".ulam-{}.tmp", ::getpid());
@@ -57,8 +57,12 @@ ExportFolder::~ExportFolder() {
 }
 
 void ExportFolder::write(const std::string& name, std::string_view bytes) {
+    writeFileAtomically(pathFor(name), bytes);
+}
+
+fs::path ExportFolder::pathFor(const std::string& name) const {
     makeFolder((made_ / name).parent_path());
-    writeFileAtomically(made_ / name, bytes);
+    return made_ / name;
 }
 
 void ExportFolder::commit() {

@@ -2,6 +2,7 @@
 
 #include "core/scene/loading/plugin_table.h"
 #include "core/scene/loading/transform.h"
+#include "core/scene/octahedral_map.h"
 
 namespace ulam {
 namespace {
@@ -38,9 +39,11 @@ struct DirectionalParameters : DirectionalEmitter::Parameters {
 
 struct EnvmapParameters : EnvmapEmitter::Parameters {
     JsonNode filename, toWorld;
+    std::string mapping = "latlong";
     template <class V>
     void describe(V& v) {
-        v("filename", filename, {.help = "picture of all directions (latitude and longitude), relative to the scene's folder and inside it"});
+        v("filename", filename, {.help = "picture of all directions, relative to the scene's folder and inside it"});
+        v("mapping", mapping, {.help = "latitude and longitude, or the square of an octahedron with equal areas, its middle at +z (pbrt-v4)", .choices = {"latlong", "octahedral"}});
         EnvmapEmitter::Parameters::describe(v);
         v("to_world", toWorld, {.help = "turns the picture; its zenith is +y"});
     }
@@ -81,6 +84,10 @@ Emitter readEnvmap(const JsonNode& node, LoadContext& context) {
     if (!uniformScale(m)) p.toWorld.fail("an envmap's to_world must keep angles: rotations and mirrorings only");
     const JsonNode filename = node.at("filename");
     Image image = context.readImage(filename, false);
+    if (p.mapping == "octahedral") {
+        if (image.width != image.height) filename.fail(fmt::format("an octahedral environment map is square, not {} x {} pixels", image.width, image.height));
+        image = latLongFromOctahedral(image);
+    }
     if (image.width < 2 || image.height < 3)
         filename.fail(fmt::format("the environment map has {} x {} pixels, it needs at least 2 x 3", image.width, image.height));
     for (const Rgb& pixel : image.pixels)

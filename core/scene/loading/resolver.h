@@ -10,6 +10,8 @@ class PluginResolver {
 public:
     /// The entry that a {"type": "ref"} names; other plugins as they are.
     virtual JsonNode resolve(const JsonNode& node) = 0;
+    /// Is it a texture, or a reference to one?
+    virtual bool isTexture(const JsonNode& node) const = 0;
     /// Index into Scene::textures of a texture that stands in the place of a parameter.
     virtual uint32_t texture(const JsonNode& node, const ParameterInfo& parameter) = 0;
 

@@ -146,7 +146,7 @@ bool noteIfUnused(const JsonNode& node, LoadContext& context) {
         "independent", "ldsampler", "multijitter", "orthogonal",       "stratified", "halton", "sobol"};
     const std::string& name = pluginName(node);
     const std::string key = node.key();
-    if (key != "integrator" && key != "sampler" && std::find(kNames.begin(), kNames.end(), name) == kNames.end())
+    if (key != "integrator" && key != "sampler" && key != "accelerator" && std::find(kNames.begin(), kNames.end(), name) == kNames.end())
         return false;
     context.warnings.push_back(fmt::format("{} has no effect, at {}", inQuotes(name), node.where()));
     return true;

@@ -28,10 +28,14 @@ struct Placed : P {
 
 struct BitmapParameters : Placed<BitmapTexture::Parameters> {
     JsonNode filename;
+    Spectrum scale{1, 1, 1};
+    bool invert = false;
     template <class V>
     void describe(V& v) {
         v("filename", filename, {.help = "exr, hdr, pfm, png, jpg or tga file, relative to the scene's folder and inside it"});
         Placed::describe(v);
+        v("scale", scale, {.help = "factor on the picture", .min = 0});
+        v("invert", invert, {.help = "1 minus the scaled picture, at least 0"});
     }
 };
 
@@ -42,7 +46,7 @@ UvTransform uvTransform(const JsonNode& node) {
 
 Texture readBitmap(const JsonNode& node, LoadContext& context) {
     const auto p = parsePlugin<BitmapParameters>(node);
-    return BitmapTexture(p, uvTransform(p.toUv), context.readImage(node.at("filename"), p.raw));
+    return BitmapTexture(p, uvTransform(p.toUv), readPicture(node, context));
 }
 
 Texture readCheckerboard(const JsonNode& node, LoadContext&) {
@@ -66,6 +70,18 @@ const PluginTable<Texture(const JsonNode&, LoadContext&)>& table() {
 
 std::vector<PluginInfo> texturePlugins() {
     return table().infos();
+}
+
+Image readPicture(const JsonNode& node, LoadContext& context) {
+    const auto p = parsePlugin<BitmapParameters>(node);
+    Image image = context.readImage(node.at("filename"), p.raw);
+    const Rgb factor(p.scale);
+    if (factor == Rgb(1.0f) && !p.invert) return image;
+    for (Rgb& pixel : image.pixels) {
+        pixel *= factor;
+        for (int c = 0; p.invert && c < 3; ++c) pixel[c] = std::max(0.0f, 1 - pixel[c]);
+    }
+    return image;
 }
 
 Texture readTexture(const JsonNode& node, LoadContext& context) {

@@ -2,6 +2,10 @@
 
 #include <algorithm>
 #include <cctype>
+#include <optional>
+
+#include "core/scene/loading/plugin_table.h"
+#include "core/scene/mitsuba/values.h"
 
 namespace ulam {
 namespace {
@@ -49,6 +53,35 @@ void upgradeConductor(Json& bsdf) {
     if (bsdf.contains("ext_eta") && (bsdf["ext_eta"] == "air" || bsdf["ext_eta"] == 1)) bsdf.erase("ext_eta");
 }
 
+/// The texture that a relief holds, under any name.
+std::optional<std::string> textureIn(const Json& bsdf) {
+    const auto textures = scenePlugins(PluginKind::Textures);
+    for (const auto& [name, value] : bsdf.items())
+        if (value.is_object() && value.contains("type") && (contains(textures, value["type"]) || value["type"] == "scale")) return name;
+    return std::nullopt;
+}
+
+/// Heights were scaled by a texture of their own.
+void upgradeBumpmap(Json& bsdf) {
+    const auto name = textureIn(bsdf);
+    if (!name || bsdf[*name]["type"] != "scale") return;
+    Json scale = bsdf[*name];
+    const auto nested = textureIn(scale);
+    if (!nested) return;
+    bsdf["scale"] = bsdf.value("scale", 1.0) * (scale.contains("scale") && scale["scale"].is_number() ? scale["scale"].get<double>() : 1.0);
+    bsdf[*name] = scale[*nested];
+}
+
+void upgradeNormalmap(Json& bsdf) {
+    if (const auto name = textureIn(bsdf)) rename(bsdf, name->c_str(), "normalmap");
+}
+
+/// "0.3, 0.7"
+void upgradeMixture(Json& bsdf) {
+    if (!bsdf.contains("weights") || !bsdf["weights"].is_string()) return;
+    if (const auto weights = parseNumbers(bsdf["weights"].get<std::string>())) bsdf["weights"] = *weights;
+}
+
 }  // namespace
 
 std::string underscored(std::string_view camelCase) {
@@ -69,6 +102,9 @@ void upgradePlugin(Json& plugin, std::string_view tag, const MitsubaVersion& ver
     if (type == "diffuse") rename(plugin, "diffuse_reflectance", "reflectance");
     if (type == "bump" && version.major == 0 && version.minor < 5) plugin["type"] = "bumpmap";
     if (type == "conductor" || type == "roughconductor") upgradeConductor(plugin);
+    if (plugin["type"] == "bumpmap") upgradeBumpmap(plugin);
+    if (type == "normalmap") upgradeNormalmap(plugin);
+    if (type == "mixturebsdf") upgradeMixture(plugin);
 }
 
 }  // namespace ulam

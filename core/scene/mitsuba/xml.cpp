@@ -45,7 +45,7 @@ struct XmlFile {
 
 class XmlReader {
 public:
-    XmlReader(const fs::path& folder, const XmlOptions& options) : folder_(folder), options_(options), values_(options.definitions) {}
+    XmlReader(const fs::path& folder, const SceneFileOptions& options) : folder_(folder), options_(options), values_(options.definitions) {}
 
     JsonDocument read(const fs::path& file) {
         const auto xml = open(file, file.string(), 0);
@@ -92,7 +92,7 @@ private:
     }
 
     fs::path folder_;
-    const XmlOptions& options_;
+    const SceneFileOptions& options_;
     Definitions values_;
     std::set<std::string> asked_;
     std::vector<fs::path> searched_;  ///< folders of <path>, from the scene's folder
@@ -327,7 +327,7 @@ void XmlReader::followReferences() {
 
 }  // namespace
 
-JsonDocument readMitsubaXml(const fs::path& file, const XmlOptions& options) {
+JsonDocument readMitsubaXml(const fs::path& file, const SceneFileOptions& options) {
     return XmlReader(file.parent_path(), options).read(file);
 }
 

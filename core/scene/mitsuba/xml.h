@@ -2,22 +2,11 @@
 // Scenes in Mitsuba's XML, of Mitsuba 2 and 3 and, in their spelling, of 0.4 to 0.6.
 
 #include "core/config/json.h"
+#include "core/scene/loading/file_options.h"
 
 #include <filesystem>
-#include <map>
-#include <string>
 
 namespace ulam {
-
-/// What stands for `$name` in a file; wins over the file's own <default>.
-using Definitions = std::map<std::string, std::string>;
-
-struct XmlOptions {
-    Definitions definitions;
-    /// BSDFs and textures that are not known become magenta, such shapes, emitters and media are left out. The dictionary
-    /// says so in "$substitutions", and so do the results of all its images.
-    bool lenient = false;
-};
 
 /// Deepest nesting of elements, and of files that include each other.
 inline constexpr int kMaxXmlDepth = 64, kMaxIncludes = 15;
@@ -26,6 +15,6 @@ inline constexpr int kMaxXmlDepth = 64, kMaxIncludes = 15;
 /// below 2 are brought to Mitsuba 3's (upgrade.h). Spectra become colours (spectra.h), file names start at the folder of
 /// `file`. Fails with InvalidConfig at elements, attributes and values that Mitsuba does not know either, at files outside
 /// of that folder, and at definitions that the file never asks for.
-JsonDocument readMitsubaXml(const std::filesystem::path& file, const XmlOptions& options = {});
+JsonDocument readMitsubaXml(const std::filesystem::path& file, const SceneFileOptions& options = {});
 
 }  // namespace ulam

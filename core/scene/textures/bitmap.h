@@ -46,6 +46,19 @@ public:
                (Spectrum(texel(x0, y0 + 1)) * (1 - fx) + Spectrum(texel(x0 + 1, y0 + 1)) * fx) * fy;
     }
     double value(const Vec2f& surface) const { return luminance(color(surface)); }
+    /// ∂value/∂u and ∂value/∂v; 0 where texels are taken without interpolation.
+    Vec2f slope(const Vec2f& surface) const {
+        if (nearest_) return {0, 0};
+        const Vec2f uv = toUv_(surface);
+        const double x = double(uv.x) * image_->width(), y = double(uv.y) * image_->height();
+        const double x0 = std::floor(x - 0.5), y0 = std::floor(y - 0.5), fx = x - 0.5 - x0, fy = y - 0.5 - y0;
+        const auto height = [&](double i, double j) { return luminance(Spectrum(texel(x0 + i, y0 + j))); };
+        const double a = height(0, 0), b = height(1, 0), c = height(0, 1), d = height(1, 1);
+        const double alongX = ((b - a) * (1 - fy) + (d - c) * fy) * image_->width();
+        const double alongY = ((c - a) * (1 - fx) + (d - b) * fx) * image_->height();
+        const auto& m = toUv_.m;
+        return {float(alongX * m[0] + alongY * m[3]), float(alongX * m[1] + alongY * m[4])};
+    }
 
     Rgb smallest() const { return extreme([](float a, float b) { return std::min(a, b); }); }
     Rgb largest() const { return extreme([](float a, float b) { return std::max(a, b); }); }

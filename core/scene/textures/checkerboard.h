@@ -23,6 +23,8 @@ struct CheckerboardTexture {
         return late(uv.x) == late(uv.y) ? color0 : color1;
     }
     double value(const Vec2f& surface) const { return luminance(color(surface)); }
+    /// Flat squares.
+    Vec2f slope(const Vec2f&) const { return {0, 0}; }
 
     Rgb smallest() const { return {float(std::min(color0.x, color1.x)), float(std::min(color0.y, color1.y)), float(std::min(color0.z, color1.z))}; }
     Rgb largest() const { return {float(std::max(color0.x, color1.x)), float(std::max(color0.y, color1.y)), float(std::max(color0.z, color1.z))}; }

@@ -16,8 +16,13 @@ inline double shadingCosine(const Vertex& v, const Vec3f& w) {
 
 /// Does the smooth lobe change within a degree? That of Diffuse does not.
 inline bool isGlossy(const Material& m) {
-    const auto glossy = [&](const Coating& coating) { return m.hasSmooth && !std::holds_alternative<Diffuse>(coating.bsdf); };
-    return glossy(m.front) || (m.back && glossy(*m.back));
+    bool glossy = false;
+    for (const Coating* side : {&m.front, m.back ? &*m.back : &m.front})
+        forEachLayer(*side, [&](const Coating& coating) {
+            const auto* plain = std::get_if<TexturedBsdf>(&coating.layer);
+            glossy |= m.hasSmooth && !(plain && std::holds_alternative<Diffuse>(plain->bsdf));
+        });
+    return glossy;
 }
 
 /// How far log densities and log f of a path may be from each other, walked and recomputed.
@@ -36,7 +41,11 @@ inline double explainedLogError(const Tracing& tracing, const Path& path, const 
         // The range that the reference finds for a cosine error of kCosineError, taken to the actual one.
         const double scale = std::max(1.0, error / kCosineError);
         std::array<double, 5> log;
-        for (size_t i = 0; i < 5; ++i) log[i] = ranges[i].high > 0 ? scale * std::log(ranges[i].high / std::max(ranges[i].low, 1e-300)) : 0;
+        // Below 1e-290 a number loses its digits, and then itself.
+        for (size_t i = 0; i < 5; ++i)
+            log[i] = ranges[i].high > 1e-290   ? scale * std::log(ranges[i].high / std::max(ranges[i].low, 1e-300))
+                     : ranges[i].high > 0 ? std::numeric_limits<double>::infinity()
+                                          : 0;
         // A contribution holds one colour of f and one of the densities.
         sum += std::max({log[0], log[1], log[2]}) + std::max(log[3], log[4]);
     };

@@ -210,7 +210,7 @@ TEST_CASE("the validator finds damage of factors") {
     damage(x.factors.edge[1].inverseD2, "squared length");
 
     // Refraction scaled on the wrong side: f without η².
-    const double ior = std::get<Dielectric>(x.scene.materialAt(x.path[t]).front.bsdf).ior;
+    const double ior = std::get<Dielectric>(x.scene.materialAt(x.path[t]).front.bsdf()).ior;
     x.factors = sound;
     for (const double wrong : {ior * ior, 1 / (ior * ior)}) {
         x.factors.at[size_t(t)].f = sound.at[size_t(t)].f * wrong;

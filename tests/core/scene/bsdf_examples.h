@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "core/scene/bsdf.h"
-#include "core/scene/bsdfs/mask.h"
 #include "core/scene/bsdfs/principled_formulas.h"
+#include "tests/support/chi_square.h"
 
 namespace ulam {
 
@@ -166,6 +166,25 @@ inline const std::vector<Bsdf>& bsdfs() {
         principledDust(),
     };
     return all;
+}
+
+/// Random numbers of an inverse have the law of the numbers that made the direction: those numbers are uniform again,
+/// whichever part of a mixture, or lobe, they stand for. From where hardly a sample is lost.
+template <class B>
+void checkNumbersOfInverse(const B& bsdf, const Vec3f& from, uint64_t seed) {
+    for (const size_t other : {0, 1}) {
+        INFO("numbers 2 and " << other << ", seed " << seed + other);
+        CHECK_FIT(misfit(
+            Domain{0, 1, 0, 1, 20, 40},
+            [&](Random& r) -> std::optional<Sample2> {
+                std::optional<ScatterSample> s;
+                while (!s) s = bsdf.sample(from, r.nextBlock());
+                Block u = r.nextBlock();
+                REQUIRE(bsdf.invert(from, s->to, s->lobe, u));
+                return Sample2{u[other], u[2]};
+            },
+            [](double, double) { return 1; }, seed + other, 200'000));
+    }
 }
 
 inline Vec3f onSphere(Random& random) {

@@ -74,10 +74,11 @@ TEST_CASE("at a vertex, BSDFs agree with a second writing of their definitions")
     };
     Tilted x(random);
     Material& material = x.scene.materials[x.scene.shapes[x.vertex.shape].material];
+    const Coating nothing{TexturedBsdf{Null(Null::Parameters()), {}}};
     for (const Bsdf& bsdf : bsdfs())
         for (const bool masked : {false, true}) {
-            material = Material({bsdf, {}});
-            if (masked) material.mask(0.4, kNone);
+            const Coating plain{TexturedBsdf{bsdf, {}}};
+            material = Material(masked ? Coating{Mixture{{nothing, plain}, {{0.6}, {0.4}}}} : plain);
             int compared = 0;
             for (int i = 0; i < 2000; ++i) {
                 x.tilt(random);
@@ -177,6 +178,28 @@ TEST_CASE("lobes are chosen with their probabilities") {
         }
     };
     for (const Bsdf& any : bsdfs()) dispatch(any, check);
+}
+
+TEST_CASE("a BSDF does nothing by lobes that it has not") {
+    Random random(makeKey(15), 0, 0);
+    for (const Bsdf& any : bsdfs())
+        dispatch(any, [&](const auto& bsdf) {
+            for (const Lobe lobe : {Lobe::Smooth, Lobe::DeltaReflection, Lobe::DeltaTransmission, Lobe::Null}) {
+                bool has = false;
+                for (int i = 0; i < 200; ++i) has |= bsdf.sampleLobe(onSphere(random), lobe, random.nextBlock()).has_value();
+                INFO("BSDF " << any.index() << ", lobe " << int(lobe));
+                CHECK((isDelta(lobe) ? bsdf.hasDelta : bsdf.hasSmooth) >= has);
+                if (has) continue;
+                for (int i = 0; i < 200; ++i) {
+                    const Vec3d a(onSphere(random)), b(i % 2 ? Vec3d(onSphere(random)) : i % 4 ? -a : reflected(a));
+                    REQUIRE(isBlack(bsdf.eval(a, b, lobe)));
+                    REQUIRE(bsdf.pdf(a, b, lobe) == 0);
+                    REQUIRE(bsdf.probability(a, b, lobe) == 0);
+                    Block u{};
+                    REQUIRE_FALSE(bsdf.invert(Vec3f(a), Vec3f(b), lobe, u));
+                }
+            }
+        });
 }
 
 TEST_CASE("the numbers of a direction give the direction again") {

@@ -1,7 +1,7 @@
 #include <pugixml.hpp>
 
 #include "core/base/file.h"
-#include "core/scene/export/mitsuba3.h"
+#include "core/scene/export/mitsuba.h"
 #include "core/scene/mesh_io.h"
 #include "tests/core/config/error_of.h"
 #include "tests/core/scene/load_text.h"

@@ -31,7 +31,7 @@ const Material& materialOf(const Scene& scene, const std::string& id) {
 }
 
 double greyOf(const Coating& coating) {
-    return std::get<Diffuse>(coating.bsdf).reflectance.x;
+    return std::get<Diffuse>(coating.bsdf()).reflectance.x;
 }
 
 }  // namespace
@@ -127,9 +127,9 @@ TEST_CASE("materials: defaults, references, two sides") {
     CHECK(greyOf(materialOf(scene, "lamp").front) == 0);
     CHECK(&materialOf(scene, "a") == &scene.materials[scene.shapes[2].material]);
     CHECK(greyOf(materialOf(scene, "a").front) == 0.9);
-    CHECK(std::get<Dielectric>(materialOf(scene, "b").front.bsdf).ior == Approx(2.419 / 1.25));
+    CHECK(std::get<Dielectric>(materialOf(scene, "b").front.bsdf()).ior == Approx(2.419 / 1.25));
     CHECK(greyOf(*materialOf(scene, "c").back) == 0.9);
-    CHECK(std::holds_alternative<Conductor>(materialOf(scene, "d").front.bsdf));
+    CHECK(std::holds_alternative<Conductor>(materialOf(scene, "d").front.bsdf()));
     CHECK(greyOf(*materialOf(scene, "d").back) == 0.25);
     const auto& lamp = std::get<AreaEmitter>(scene.emitters[scene.shapes[1].emitter]);
     CHECK(lamp.shape == 1);
@@ -138,7 +138,7 @@ TEST_CASE("materials: defaults, references, two sides") {
 
 TEST_CASE("dielectric: the defaults are glass in air") {
     const Scene scene = loadText(sceneWith(R"("s": {"type": "sphere", "bsdf": {"type": "dielectric"}})"));
-    CHECK(std::get<Dielectric>(materialOf(scene, "s").front.bsdf).ior == Approx(1.5046 / 1.000277));
+    CHECK(std::get<Dielectric>(materialOf(scene, "s").front.bsdf()).ior == Approx(1.5046 / 1.000277));
 }
 
 TEST_CASE("emitters: point and constant") {
@@ -251,7 +251,7 @@ TEST_CASE("roughdiffuse, phong, ward and principled: their parameters, with Mits
         "f": {"type": "cube", "bsdf": {"type": "twosided", "b": {"type": "principled", "specular": 0}}},
         "g": {"type": "cube", "bsdf": {"type": "principled", "eta": 1.3, "spec_trans": 1, "main_specular_sampling_rate": 2}}
     )"));
-    const auto bsdfOf = [&]<class B>(const std::string& id, B*) { return std::get<B>(materialOf(scene, id).front.bsdf); };
+    const auto bsdfOf = [&]<class B>(const std::string& id, B*) { return std::get<B>(materialOf(scene, id).front.bsdf()); };
     const auto clay = bsdfOf("a", (RoughDiffuse*)nullptr);
     CHECK(clay.qualitative);
     CHECK(clay.alpha == 0.2);
@@ -260,7 +260,7 @@ TEST_CASE("roughdiffuse, phong, ward and principled: their parameters, with Mits
     CHECK(paint.exponent == 30);
     CHECK(paint.diffuseReflectance == Spectrum(0.5));
     CHECK(paint.specularReflectance == Spectrum(0.2));
-    CHECK(materialOf(scene, "c").front.bindings.size() == 1);
+    CHECK(std::get<TexturedBsdf>(materialOf(scene, "c").front.layer).bindings.size() == 1);
     CHECK(bsdfOf("d", (Ward*)nullptr).variant == Ward::Variant::Balanced);
     CHECK(bsdfOf("d", (Ward*)nullptr).alphaV == 0.1);
     CHECK(bsdfOf("e", (Ward*)nullptr).variant == Ward::Variant::Ward);

@@ -16,7 +16,7 @@ namespace {
 struct XmlScene {
     SceneFolder folder{"mitsuba_xml"};
 
-    JsonDocument read(const std::string& content, const std::string& version = "3.0.0", const XmlOptions& options = {}) const {
+    JsonDocument read(const std::string& content, const std::string& version = "3.0.0", const SceneFileOptions& options = {}) const {
         folder.write("scene.xml", "<scene version=\"" + version + "\">\n" + content + "\n</scene>\n");
         return readMitsubaXml(folder.path / "scene.xml", options);
     }

@@ -145,7 +145,6 @@ TEST_CASE("textures reach BSDFs, masks and lights") {
         CHECK(reflectance(v, side) == Approx(0.25 * (2 / 3.0) / 8).epsilon(1e-5));
         CHECK(reflectance(w, side) == Approx(0.75 * (3 + 2 / 3.0) / 8).epsilon(1e-5));
     }
-    CHECK(opacityAt(scene, v) == 0.25);
     CHECK(scatter(scene, v, Lobe::Null, {0, 0, 1}, {0, 0, -1}).f.x == Approx(0.75));
     CHECK(smoothShare(scene, w, {0, 0, 1}) == Approx(0.75));
     const AreaEmitter& light = std::get<AreaEmitter>(scene.emitters[scene.shapes[0].emitter]);

@@ -54,7 +54,7 @@ inline Estimate directLight(const Scene& scene, const Vec2f& rasterMin, const Ve
         if (cosines <= 0 ||
             scene.rays().occluded(Vec3f(Vec3d(seen.position) + segment * 1e-4), Vec3f(segment * (1 - 2e-4))))
             continue;
-        const double albedo = std::get<Diffuse>(scene.materialAt(seen).front.bsdf).reflectance.x;
+        const double albedo = std::get<Diffuse>(scene.materialAt(seen).front.bsdf()).reflectance.x;
         const double f = albedo / kPi * emitted * cosines / d2 * light.area;
         sum += f, sum2 += f * f;
     }

@@ -1,21 +1,18 @@
-#include "core/scene/export/mitsuba3.h"
+#include "core/scene/export/mitsuba.h"
 
 #include <algorithm>
 #include <array>
 #include <map>
 #include <pugixml.hpp>
-#include <set>
 #include <sstream>
 
-#include "core/scene/export/export_folder.h"
-#include "core/scene/export/nearest.h"
-#include "core/scene/loading/context.h"
+#include "core/scene/export/assets.h"
+#include "core/scene/export/mitsuba_dialect.h"
 #include "core/scene/loading/entries.h"
 #include "core/scene/loading/plugin_table.h"
 #include "core/scene/loading/sensors.h"
 #include "core/scene/loading/shapes.h"
 #include "core/scene/loading/transform.h"
-#include "core/scene/mesh_io.h"
 
 namespace ulam {
 namespace {
@@ -26,7 +23,7 @@ struct TaggedPlugin {
     std::vector<ParameterInfo> parameters;
 };
 
-std::map<std::string, TaggedPlugin> taggedPlugins() {
+std::map<std::string, TaggedPlugin> taggedPlugins(const MitsubaDialect& dialect) {
     std::map<std::string, TaggedPlugin> result;
     for (const auto& [kind, tag] : {std::pair{PluginKind::Shapes, "shape"},
                                     {PluginKind::Bsdfs, "bsdf"},
@@ -35,41 +32,15 @@ std::map<std::string, TaggedPlugin> taggedPlugins() {
                                     {PluginKind::Sensors, "sensor"},
                                     {PluginKind::Films, "film"},
                                     {PluginKind::Filters, "rfilter"}})
-        for (PluginInfo& plugin : scenePlugins(kind)) result[plugin.name] = {tag, std::move(plugin.parameters)};
+        for (PluginInfo& plugin : scenePlugins(kind)) {
+            plugin.parameters.insert(plugin.parameters.end(), dialect.parameters.begin(), dialect.parameters.end());
+            result[plugin.name] = {tag, std::move(plugin.parameters)};
+        }
     return result;
 }
 
 /// Parameters for which 0 stands here for what Mitsuba takes where they are not given.
 constexpr std::array kZeroIsDefault{"fov", "beam_width"};
-
-/// Letters, digits, "_" and "-" only.
-std::string plain(std::string text) {
-    for (char& c : text)
-        if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-') c = '_';
-    return text;
-}
-
-/// Plain names, never the same twice.
-class UniqueNames {
-public:
-    std::string make(const std::string& name, const std::string& ending = "") {
-        // Mitsuba keeps ids that begin with "_" to itself.
-        std::string stem = plain(name);
-        if (stem.empty() || stem[0] == '_') stem.insert(0, 1, 'x');
-        std::string unique = stem + ending;
-        for (int i = 2; !taken_.insert(unique).second; ++i) unique = fmt::format("{}_{}{}", stem, i, ending);
-        return unique;
-    }
-    /// The name of a copy of a file, with its ending.
-    std::string makeFile(const std::filesystem::path& file) {
-        const std::string ending = file.extension().string();
-        return make((file.parent_path() / file.stem()).string(),
-                    ending.empty() ? "" : fmt::format(".{}", plain(ending.substr(1))));
-    }
-
-private:
-    std::set<std::string> taken_;
-};
 
 /// Shortest decimals that read back as the same numbers.
 std::string decimals(const std::vector<double>& numbers) {
@@ -93,9 +64,13 @@ pugi::xml_node appendProperty(pugi::xml_node parent, const char* tag, const std:
 
 class Exporter {
 public:
-    Exporter(const SceneDescription& description, const std::filesystem::path& folder)
-        : scene_(description.build()), filmSize_(description.filmSize()), folder_(folder) {
-        files_.folder = description.folder();
+    Exporter(const SceneDescription& description, const std::filesystem::path& folder, const MitsubaDialect& dialect)
+        : dialect_(dialect),
+          plugins_(taggedPlugins(dialect)),
+          scene_(description.build()),
+          filmSize_(description.filmSize()),
+          folder_(folder, dialect.format),
+          assets_(folder_, description.folder()) {
         dictionary_ = groupsApart(withClearSensors(JsonNode(description.dictionary())));
     }
 
@@ -108,52 +83,46 @@ private:
     void entry(const JsonNode& node);
     pugi::xml_node plugin(pugi::xml_node parent, const JsonNode& node);
     void property(pugi::xml_node parent, const ParameterInfo& parameter, const JsonNode& value);
-    std::string copyFile(const JsonNode& filename, const char* tag);
+    void scaled(pugi::xml_node parent, const JsonNode& node);
     pugi::xml_node mesh(pugi::xml_node parent, const JsonNode& node);
     JsonNode groupsApart(const JsonNode& dictionary) const;
     JsonNode withClearSensors(const JsonNode& dictionary) const;
 
-    const std::map<std::string, TaggedPlugin> plugins_ = taggedPlugins();
+    const MitsubaDialect& dialect_;
+    const std::map<std::string, TaggedPlugin> plugins_;
     JsonNode dictionary_{};
     Scene scene_;
     FilmSize filmSize_;
     ExportFolder folder_;
-    LoadContext files_;
-    std::map<std::string, std::string> ids_, copies_;  // by name of an entry, by file name in the scene
-    UniqueNames idNames_, fileNames_;
+    ExportAssets assets_;
+    std::map<std::string, std::string> ids_;  // by name of an entry
+    UniqueNames idNames_;
     pugi::xml_document document_;
     pugi::xml_node root_;
     std::vector<std::string> leftOut_;
 };
 
-std::string Exporter::copyFile(const JsonNode& filename, const char* tag) {
-    const auto [copy, isNew] = copies_.try_emplace(filename.string());
-    if (isNew) {
-        copy->second = fmt::format("{}/{}", std::string_view(tag) == "shape" ? "meshes" : "textures",
-                                   fileNames_.makeFile(filename.string()));
-        folder_.write(copy->second, files_.read(filename));
-    }
-    return copy->second;
-}
-
 void Exporter::property(pugi::xml_node parent, const ParameterInfo& parameter, const JsonNode& value) {
-    const std::string& name = parameter.name;
     if (value.isNull()) return;
-    if (value.json() == 0 && std::ranges::find(kZeroIsDefault, name) != kZeroIsDefault.end()) return;
+    if (value.json() == 0 && std::ranges::find(kZeroIsDefault, parameter.name) != kZeroIsDefault.end()) return;
+    const std::string name = dialect_.spelled(parameter.name);
     if (isPlugin(value) && pluginName(value) != "rgb") {
         plugin(parent, value).append_attribute("name") = name.c_str();
     } else if (parameter.type == "spectrum" || value.isObject()) {
         const Spectrum c = parseSpectrum(value);
         appendProperty(parent, "rgb", name, decimals({c.x, c.y, c.z}));
-    } else if (name.starts_with("to_")) {
+    } else if (parameter.name.starts_with("to_")) {
         pugi::xml_node transform = parent.append_child("transform");
         transform.append_attribute("name") = name.c_str();
         transform.append_child("matrix").append_attribute("value") = matrix(parseTransform(value)).c_str();
+    } else if (name == "weights") {
+        appendProperty(parent, "string", name, decimals(value.numbers()));
     } else if (value.isArray()) {
         const char* tag = parameter.type != "json" ? "rgb" : name == "direction" ? "vector" : "point";
         appendProperty(parent, tag, name, decimals(value.numbers(3)));
     } else if (name == "filename") {
-        appendProperty(parent, "string", name, copyFile(value, parent.name()));
+        appendProperty(parent, "string", name,
+                       assets_.copy(value, std::string_view(parent.name()) == "shape" ? "meshes" : "textures"));
     } else if (value.isString()) {
         appendProperty(parent, "string", name, value.string());
     } else if (value.isBoolean()) {
@@ -171,21 +140,34 @@ pugi::xml_node Exporter::plugin(pugi::xml_node parent, const JsonNode& node) {
         reference.append_attribute("id") = ids_.at(node.at("id").string()).c_str();
         return reference;
     }
-    if (const auto nearest = nearestInMitsuba3(node)) {
-        const JsonNode written(*nearest);
-        leaveOut(node, fmt::format("{}, written as {},", inQuotes(pluginName(node)), inQuotes(pluginName(written))));
+    if (const auto nearest = dialect_.nearest(node)) {
+        const JsonNode written(nearest->dictionary);
+        if (!nearest->same) leaveOut(node, fmt::format("{}, written as {},", inQuotes(pluginName(node)), inQuotes(pluginName(written))));
         return plugin(parent, written);
     }
     if (pluginName(node) == "mesh") return mesh(parent, node);
+    if (const auto baked = assets_.bakedPicture(node)) {
+        pugi::xml_node picture = plugin(parent, JsonNode(baked->plugin));
+        appendProperty(picture, "string", "filename", baked->file);
+        return picture;
+    }
     const TaggedPlugin& known = plugins_.at(pluginName(node));
     pugi::xml_node xml = parent.append_child(known.tag);
     xml.append_attribute("type") = pluginName(node).c_str();
-    for (const auto& [key, member] : node.members()) {
+    std::vector<std::string> lost;
+    const JsonNode written(dialect_.reworded(node, lost));
+    for (const std::string& what : lost) leaveOut(node, what);
+    for (const auto& [key, rewritten] : written.members()) {
         if (key == "type" || key == "id") continue;
+        // What stayed as it was knows its place.
+        const auto original = node.find(key);
+        const JsonNode member = original && original->json() == rewritten.json() ? *original : rewritten;
         const auto parameter = std::find_if(known.parameters.begin(), known.parameters.end(),
                                             [&, &name = key](const ParameterInfo& p) { return p.name == name; });
         if (parameter != known.parameters.end())
             property(xml, *parameter, member);
+        else if (isPlugin(member) && pluginName(member) == "scale")
+            scaled(xml, member);
         else if (isPlugin(member) && (pluginName(member) == "ref" || plugins_.contains(pluginName(member))))
             plugin(xml, member);  // without a name: its kind says what it is for, its place which one it is
         else
@@ -194,18 +176,25 @@ pugi::xml_node Exporter::plugin(pugi::xml_node parent, const JsonNode& node) {
     return xml;
 }
 
+/// A factor around a texture, which only old versions have.
+void Exporter::scaled(pugi::xml_node parent, const JsonNode& node) {
+    pugi::xml_node xml = parent.append_child("texture");
+    xml.append_attribute("type") = "scale";
+    appendProperty(xml, "float", "scale", decimals({node.at("scale").number()}));
+    plugin(xml, node.at("texture"));
+}
+
 /// `mesh` is Ulam's own.
 pugi::xml_node Exporter::mesh(pugi::xml_node parent, const JsonNode& node) {
-    const Shape shape = readShape(node, files_);
+    const Shape shape = readShape(node, assets_.files);
     const Mesh& loaded = std::get<Mesh>(shape.geometry);
-    const std::string file = fmt::format("meshes/{}", fileNames_.make(entryName(node), ".ply"));
-    folder_.write(file, plyBytes(loaded));
+    const std::string file = assets_.mesh(loaded, entryName(node));
     Json ply = node.json();
     for (const ParameterInfo& parameter : plugins_.at("mesh").parameters) ply.erase(parameter.name);
     ply["type"] = "ply";
     pugi::xml_node xml = plugin(parent, JsonNode(ply));
     appendProperty(xml, "string", "filename", file);
-    if (loaded.normals.empty()) appendProperty(xml, "boolean", "face_normals", "true");
+    if (loaded.normals.empty()) appendProperty(xml, "boolean", dialect_.spelled("face_normals"), "true");
     return xml;
 }
 
@@ -252,20 +241,26 @@ JsonNode Exporter::withClearSensors(const JsonNode& dictionary) const {
 void Exporter::entry(const JsonNode& node) {
     const std::string& type = pluginName(node);
     const auto known = plugins_.find(type);
-    if (noteIfUnused(node, files_) || known == plugins_.end()) return leaveOut(node, inQuotes(type));
+    if (noteIfUnused(node, assets_.files) || known == plugins_.end()) return leaveOut(node, inQuotes(type));
     plugin(root_, node).append_attribute("id") = ids_.at(entryName(node)).c_str();
 }
 
 std::vector<std::string> Exporter::run() {
-    document_.append_child(pugi::node_comment).set_value(ExportFolder::mark);
+    document_.append_child(pugi::node_comment).set_value(dialect_.format.mark);
     root_ = document_.append_child("scene");
-    root_.append_attribute("version") = "3.0.0";
+    root_.append_attribute("version") = dialect_.version;
+    if (dialect_.choosesIntegrator) {
+        pugi::xml_node choice = root_.append_child("default");
+        choice.append_attribute("name") = "integrator";
+        choice.append_attribute("value") = "path";
+        root_.append_child("integrator").append_attribute("type") = "$integrator";
+    }
     const std::vector<JsonNode> entries = entriesOf(dictionary_);
     for (const JsonNode& node : entries) ids_[entryName(node)] = idNames_.make(entryName(node));
     for (const JsonNode& node : entries) entry(node);
     std::ostringstream text;
     document_.save(text, "  ");
-    folder_.write(ExportFolder::sceneFile, text.str());
+    folder_.writeScene(text.str());
     folder_.commit();
     return leftOut_;
 }
@@ -273,7 +268,11 @@ std::vector<std::string> Exporter::run() {
 }  // namespace
 
 std::vector<std::string> exportMitsuba3(const SceneDescription& description, const std::filesystem::path& folder) {
-    return Exporter(description, folder).run();
+    return Exporter(description, folder, mitsuba3()).run();
+}
+
+std::vector<std::string> exportMitsuba06(const SceneDescription& description, const std::filesystem::path& folder) {
+    return Exporter(description, folder, mitsuba06()).run();
 }
 
 }  // namespace ulam
