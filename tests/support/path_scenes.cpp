@@ -242,8 +242,12 @@ const std::filesystem::path& sceneFolder() {
 
 }  // namespace
 
+SceneDescription describeScene(const Json& dictionary) {
+    return SceneDescription::fromNode(JsonNode(dictionary), sceneFolder());
+}
+
 Scene buildScene(const Json& dictionary, const Json& film) {
-    return SceneDescription::fromNode(JsonNode(dictionary), sceneFolder()).build(film);
+    return describeScene(dictionary).build(film);
 }
 
 const std::vector<NamedScene>& pathScenes() {

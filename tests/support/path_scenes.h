@@ -15,6 +15,7 @@ struct NamedScene {
     bool infiniteLight = false;
 };
 
+SceneDescription describeScene(const Json& dictionary);
 /// Built with a film of 32×24 pixels, unless the dictionary says otherwise.
 Scene buildScene(const Json& dictionary, const Json& film = {{"width", 32}, {"height", 24}});
 

@@ -106,15 +106,15 @@ void Exporter::property(pugi::xml_node parent, const ParameterInfo& parameter, c
     if (value.isNull()) return;
     if (value.json() == 0 && std::ranges::find(kZeroIsDefault, parameter.name) != kZeroIsDefault.end()) return;
     const std::string name = dialect_.spelled(parameter.name);
-    if (isPlugin(value) && pluginName(value) != "rgb") {
+    if (parameter.name.starts_with("to_")) {
+        pugi::xml_node transform = parent.append_child("transform");
+        transform.append_attribute("name") = name.c_str();
+        transform.append_child("matrix").append_attribute("value") = matrix(parseTransform(value)).c_str();
+    } else if (isPlugin(value) && pluginName(value) != "rgb") {
         plugin(parent, value).append_attribute("name") = name.c_str();
     } else if (parameter.type == "spectrum" || value.isObject()) {
         const Spectrum c = parseSpectrum(value);
         appendProperty(parent, "rgb", name, decimals({c.x, c.y, c.z}));
-    } else if (parameter.name.starts_with("to_")) {
-        pugi::xml_node transform = parent.append_child("transform");
-        transform.append_attribute("name") = name.c_str();
-        transform.append_child("matrix").append_attribute("value") = matrix(parseTransform(value)).c_str();
     } else if (name == "weights") {
         appendProperty(parent, "string", name, decimals(value.numbers()));
     } else if (value.isArray()) {

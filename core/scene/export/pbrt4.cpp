@@ -9,6 +9,7 @@
 #include "core/scene/loading/plugin_table.h"
 #include "core/scene/loading/sensors.h"
 #include "core/scene/loading/shapes.h"
+#include "core/scene/loading/transform.h"
 #include "core/scene/octahedral_map.h"
 
 namespace ulam {
@@ -33,6 +34,11 @@ std::string transform(const Vec3d& x, const Vec3d& y, const Vec3d& z, const Vec3
     return text + " ]\n";
 }
 
+std::vector<ParameterInfo> shapeParameters(const std::string& name) {
+    const std::vector<PluginInfo> plugins = shapePlugins();
+    return std::find_if(plugins.begin(), plugins.end(), [&](const PluginInfo& p) { return p.name == name; })->parameters;
+}
+
 class Exporter {
 public:
     Exporter(const SceneDescription& description, const std::filesystem::path& folder)
@@ -54,7 +60,9 @@ private:
     JsonNode resolve(const JsonNode& node) const;
     std::string sensor(const JsonNode& node);
     std::string film(const JsonNode& sensor);
-    void shape(const JsonNode& node);
+    void shape(const JsonNode& node, const Shape& shape);
+    void group(const JsonNode& node, const std::string& name);
+    void instance(const JsonNode& node);
     std::string geometry(const Shape& shape, const std::string& name, bool textured, bool& reversed);
     void light(const JsonNode& node);
     std::string environment(const JsonNode& node, const EnvmapEmitter& emitter);
@@ -181,19 +189,13 @@ std::string Exporter::geometry(const Shape& shape, const std::string& name, bool
     return fmt::format("Shape \"plymesh\" \"string filename\" \"{}\"", assets_.mesh(mesh, name));
 }
 
-void Exporter::shape(const JsonNode& node) {
-    const auto found = shapes_.find(node.key());
-    if (found == shapes_.end()) return leaveOut(node, inQuotes(pluginName(node)));
-    const Shape& shape = scene_.shapes[found->second];
+void Exporter::shape(const JsonNode& node, const Shape& shape) {
     const bool emits = shape.emitter != kNone;
     const auto parametrization = std::holds_alternative<Sphere>(shape.geometry) ? pbrt::Parametrization::Sphere
                                  : std::holds_alternative<Disk>(shape.geometry) ? pbrt::Parametrization::Disk
                                                                                 : pbrt::Parametrization::Same;
     std::optional<JsonNode> bsdf;
-    const std::vector<PluginInfo> known = shapePlugins();
-    const auto self =
-        std::find_if(known.begin(), known.end(), [&](const PluginInfo& p) { return p.name == pluginName(node); });
-    for (const JsonNode& nested : nestedPlugins(node, self->parameters))
+    for (const JsonNode& nested : nestedPlugins(node, shapeParameters(pluginName(node))))
         if (!contains(emitterPlugins(), pluginName(nested))) bsdf = nested;
     const Pbrt4Materials::Use use =
         bsdf ? materials_.use(*bsdf, pluginName(*bsdf) == "ref" ? bsdf->at("id").string() : node.key(), parametrization)
@@ -207,6 +209,24 @@ void Exporter::shape(const JsonNode& node) {
     bool reversed = false;
     const std::string text = geometry(shape, node.key(), bsdf && materials_.isTextured(*bsdf), reversed);
     world_ += fmt::format("{}{}{}\nAttributeEnd\n", reversed ? "ReverseOrientation\n" : "", text, use.alpha);
+}
+
+void Exporter::group(const JsonNode& node, const std::string& name) {
+    world_ += fmt::format("ObjectBegin \"{}\"\n", name);
+    for (const JsonNode& nested : nestedPlugins(node, {})) shape(nested, readShape(nested, assets_.files));
+    world_ += "ObjectEnd\n";
+}
+
+void Exporter::instance(const JsonNode& node) {
+    for (const JsonNode& nested : nestedPlugins(node, shapeParameters("instance"))) {
+        const bool named = pluginName(nested) == "ref";
+        const std::string name = named ? nested.at("id").string() : node.key();
+        if (!named) group(nested, name);
+        const auto toWorld = node.find("to_world");
+        const Matrix4 m = toWorld ? parseTransform(*toWorld) : Matrix4();
+        const auto row = [&](int i) { return Vec3d(m[i][0], m[i][1], m[i][2]); };
+        world_ += fmt::format("AttributeBegin\n{}ObjectInstance \"{}\"\nAttributeEnd\n", transform(row(0), row(1), row(2), row(3)), name);
+    }
 }
 
 std::string Exporter::environment(const JsonNode& node, const EnvmapEmitter& emitter) {
@@ -246,6 +266,9 @@ std::vector<std::string> Exporter::run() {
     const std::vector<JsonNode> entries = entriesOf(dictionary_);
     for (const JsonNode& node : entries) entries_.emplace(entryName(node), node);
     for (size_t i = 0; i < scene_.shapes.size(); ++i) shapes_.emplace(scene_.shapes[i].id, i);
+    // Before their instances.
+    for (const JsonNode& node : entries)
+        if (pluginName(node) == "shapegroup") group(node, entryName(node));
     std::string head = fmt::format("{}\nIntegrator \"volpath\" \"integer maxdepth\" {}\n", kFormat.mark, kLongestPath);
     for (const JsonNode& node : entries) {
         const std::string& type = pluginName(node);
@@ -253,11 +276,13 @@ std::vector<std::string> Exporter::run() {
             leaveOut(node, inQuotes(type));
         else if (contains(scenePlugins(PluginKind::Sensors), type))
             head += sensor(node);
-        else if (contains(shapePlugins(), type))
-            shape(node);
+        else if (type == "instance")
+            instance(node);
+        else if (const auto found = shapes_.find(node.key()); type != "shapegroup" && contains(shapePlugins(), type))
+            shape(node, scene_.shapes[found->second]);
         else if (contains(emitterPlugins(), type))
             light(node);
-        else if (!contains(scenePlugins(PluginKind::Bsdfs), type) &&
+        else if (type != "shapegroup" && !contains(scenePlugins(PluginKind::Bsdfs), type) &&
                  !contains(scenePlugins(PluginKind::Textures), type))
             leaveOut(node, inQuotes(type));
     }

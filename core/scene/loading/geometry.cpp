@@ -32,6 +32,8 @@ bool isDegenerate(const Mesh& mesh, const std::array<uint32_t, 3>& t) {
 Vec3f transformedNormal(const Vec3f& n, const Matrix4& inverseTranspose) {
     Vec3d out;
     inverseTranspose.multDirMatrix(Vec3d(n), out);
+    // What has length 1 but for rounding stays as it is, so that a mesh that was written is the one that is read.
+    if (std::abs(out.length2() - 1) < 1e-6) return Vec3f(out);
     return out.length() > 0 ? Vec3f(out.normalized()) : Vec3f(0.0f);
 }
 
