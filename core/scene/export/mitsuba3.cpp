@@ -109,7 +109,7 @@ void Exporter::property(pugi::xml_node parent, const ParameterInfo& parameter, c
         transform.append_attribute("name") = name.c_str();
         transform.append_child("matrix").append_attribute("value") = matrix(parseTransform(value)).c_str();
     } else if (value.isArray()) {
-        const char* tag = parameter.type != "json" ? "rgb" : name == "direction" ? "vector" : "point";
+        const char* tag = parameter.type != "json" ? "rgb" : name.ends_with("direction") ? "vector" : "point";
         appendProperty(parent, tag, name, decimals(value.numbers(3)));
     } else if (name == "filename") {
         appendProperty(parent, "string", name,
