@@ -122,23 +122,29 @@ private:
             place = inDouble(cylinder->base) + axis * height + outward * double(cylinder->radius);
             normal = shading = shape.flipNormals ? -outward : outward;
         } else {
-            const Mesh& mesh = std::get<Mesh>(shape.geometry);
+            const Mesh& mesh = *shape.triangleMesh();
+            const auto* instance = std::get_if<MeshInstance>(&shape.geometry);
             if (v.primitive >= mesh.triangles.size())
                 return fmt::format("triangle {} of {}", v.primitive, mesh.triangles.size());
             const auto& t = mesh.triangles[v.primitive];
             const double b[3] = {1 - double(v.uv.x) - v.uv.y, v.uv.x, v.uv.y};
             if (!(std::min({b[0], b[1], b[2]}) > -1e-5))
                 return fmt::format("barycentric coordinates ({}, {}) outside the triangle", v.uv.x, v.uv.y);
-            Vec3d interpolated(0);
+            Vec3d interpolated(0), corners[3];
             for (size_t j = 0; j < 3; ++j) {
-                place += inDouble(mesh.positions[t[j]]) * b[j];
+                corners[j] = inDouble(mesh.positions[t[j]]);
+                if (instance) corners[j] = transformed(*instance, corners[j]);
+                place += corners[j] * b[j];
                 if (!mesh.normals.empty()) interpolated += inDouble(mesh.normals[t[j]]) * b[j];
             }
-            const Vec3d origin = inDouble(mesh.positions[t[0]]);
-            normal =
-                (inDouble(mesh.positions[t[1]]) - origin).cross(inDouble(mesh.positions[t[2]]) - origin).normalized();
+            normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
             // Where opposite normals cancel out their direction is rounding.
             const bool cancels = interpolated.length() < 1e-3;
+            if (instance) {
+                const Matrix4 m = matrixOf(*instance);
+                if (m.determinant() < 0) normal = -normal;
+                m.inverse().transposed().multDirMatrix(Vec3d(interpolated), interpolated);
+            }
             shading = mesh.normals.empty() || interpolated.length() == 0 ? normal
                       : cancels                                          ? inDouble(v.shadingNormal)
                                                                          : interpolated.normalized();
@@ -152,6 +158,18 @@ private:
         if (!((shading - inDouble(v.shadingNormal)).length() <= 1e-5))
             return fmt::format("shading normal {}, recomputed {}", text(v.shadingNormal), text(shading));
         return {};
+    }
+
+    static Matrix4 matrixOf(const MeshInstance& instance) {
+        Matrix4 m;
+        for (int row = 0; row < 4; ++row)
+            for (int column = 0; column < 3; ++column) m[row][column] = instance.toWorld[size_t(row)][column];
+        return m;
+    }
+    static Vec3d transformed(const MeshInstance& instance, const Vec3d& p) {
+        Vec3d out;
+        matrixOf(instance).multVecMatrix(p, out);
+        return out;
     }
 
     // Edges: visibility, geometry.

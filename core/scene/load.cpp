@@ -6,6 +6,7 @@
 #include "core/base/sha256.h"
 #include "core/scene/loading/emitters.h"
 #include "core/scene/loading/entries.h"
+#include "core/scene/loading/groups.h"
 #include "core/scene/loading/materials.h"
 #include "core/scene/loading/plugin_table.h"
 #include "core/scene/loading/sensors.h"
@@ -25,6 +26,9 @@ std::vector<PluginInfo> sceneEntries() {
     return all;
 }
 
+/// Beyond this an instance is refused: a small file may ask for any number of shapes.
+constexpr size_t kMostShapes = size_t(1) << 22;
+
 class SceneBuilder : private PluginResolver {
 public:
     SceneBuilder(const JsonNode& root, const std::filesystem::path& folder) : root_(root) { context_.folder = folder; }
@@ -35,6 +39,7 @@ public:
 private:
     std::vector<JsonNode> entries() const { return entriesOf(root_); }
     void nameEntries();
+    bool isA(PluginKind kind, const JsonNode& node) const;
     JsonNode sensorNode() const;
     JsonNode resolve(const JsonNode& node) override;
     uint32_t texture(const JsonNode& node, const ParameterInfo& parameter) override;
@@ -42,20 +47,34 @@ private:
     JsonNode named(const JsonNode& reference, PluginKind kind, const char* what) const;
     uint32_t material(const JsonNode& node);
     uint32_t addMaterial(Material material);
-    void addShape(const JsonNode& node);
+    Shape shape(const JsonNode& node, bool inGroup);
+    const std::vector<Shape>& group(const JsonNode& node);
+    void addInstance(const JsonNode& node);
     void addEmitter(const JsonNode& node);
 
     JsonNode root_;
-    std::map<std::string, JsonNode> named_;  // entries by name
     LoadContext context_;
     Scene scene_;
+    std::map<std::string, JsonNode> named_;                 // entries by name
     std::map<std::string, uint32_t> materials_, textures_;  // by JSON pointer of the plugin
+    std::map<std::string, std::vector<Shape>> groups_;      // likewise
+    std::map<std::string, PluginKind> kinds_ = [] {
+        std::map<std::string, PluginKind> kinds;
+        for (const PluginKind kind : {PluginKind::Shapes, PluginKind::Bsdfs, PluginKind::Emitters, PluginKind::Sensors, PluginKind::Textures})
+            for (const PluginInfo& plugin : scenePlugins(kind)) kinds[plugin.name] = kind;
+        return kinds;
+    }();
 };
+
+bool SceneBuilder::isA(PluginKind kind, const JsonNode& node) const {
+    const auto known = kinds_.find(pluginName(node));
+    return known != kinds_.end() && known->second == kind;
+}
 
 JsonNode SceneBuilder::sensorNode() const {
     std::optional<JsonNode> sensor;
     for (const JsonNode& entry : entries()) {
-        if (!contains(scenePlugins(PluginKind::Sensors), pluginName(entry))) continue;
+        if (!isA(PluginKind::Sensors, entry)) continue;
         if (sensor) entry.fail("a scene has exactly one sensor", fmt::format("another stands at {}", sensor->where()));
         sensor = entry;
     }
@@ -79,23 +98,20 @@ JsonNode SceneBuilder::named(const JsonNode& node, PluginKind kind, const char* 
     if (pluginName(node) != "ref") return node;
     node.allowOnly("key of a reference", {"type", "id"});
     const JsonNode id = node.at("id");
-    const auto found = named_.find(id.string());
-    if (found == named_.end()) {
+    const auto entry = named_.find(id.string());
+    if (entry == named_.end()) {
         std::vector<std::string> names;
-        for (const JsonNode& entry : entries()) names.push_back(entryName(entry));
+        for (const auto& known : named_) names.push_back(known.first);
         unknownName("entry of the scene", id.string(), names, id.where());
     }
-    const JsonNode& entry = found->second;
-    if (!contains(scenePlugins(kind), pluginName(entry)))
-        id.fail(fmt::format("{} is no {}, but {}", inQuotes(found->first), what, inQuotes(pluginName(entry))));
-    return entry;
+    if (!isA(kind, entry->second)) id.fail(fmt::format("{} is no {}, but {}", inQuotes(entry->first), what, inQuotes(pluginName(entry->second))));
+    return entry->second;
 }
 
 bool SceneBuilder::isTexture(const JsonNode& node) const {
-    if (pluginName(node) != "ref") return contains(scenePlugins(PluginKind::Textures), pluginName(node));
-    for (const JsonNode& entry : entries())
-        if (entryName(entry) == node.at("id").string()) return contains(scenePlugins(PluginKind::Textures), pluginName(entry));
-    return false;
+    if (pluginName(node) != "ref") return isA(PluginKind::Textures, node);
+    const auto entry = named_.find(node.at("id").string());
+    return entry != named_.end() && isA(PluginKind::Textures, entry->second);
 }
 
 uint32_t SceneBuilder::texture(const JsonNode& node, const ParameterInfo& parameter) {
@@ -122,21 +138,19 @@ uint32_t SceneBuilder::material(const JsonNode& node) {
     return materials_[plugin.pointer()] = addMaterial(readMaterial(plugin, *this));
 }
 
-void SceneBuilder::addShape(const JsonNode& node) {
+/// The next one of the scene, or a member of a group.
+Shape SceneBuilder::shape(const JsonNode& node, bool inGroup) {
     const auto index = uint32_t(scene_.shapes.size());
     Shape shape = readShape(node, context_);
     shape.id = node.key();
     std::optional<uint32_t> covering;
-    const auto plugins = shapePlugins();
-    const auto self =
-        std::find_if(plugins.begin(), plugins.end(), [&](const PluginInfo& p) { return p.name == pluginName(node); });
-    for (const JsonNode& nested : nestedPlugins(node, self->parameters)) {
-        const std::string& name = pluginName(nested);
-        if (contains(emitterPlugins(), name)) {
+    for (const JsonNode& nested : nestedPlugins(node, shapeParameters(node))) {
+        if (isA(PluginKind::Emitters, nested)) {
+            if (inGroup) nested.fail("a shape of a shape group has no emitter", "lights stand in the scene itself");
             if (shape.emitter != kNone) nested.fail("a shape has at most one emitter");
             shape.emitter = uint32_t(scene_.emitters.size());
             scene_.emitters.push_back(readAreaEmitter(nested, index, *this));
-        } else if (name == "ref" || contains(bsdfPlugins(), name)) {
+        } else if (pluginName(nested) == "ref" || isA(PluginKind::Bsdfs, nested)) {
             if (covering) nested.fail("a shape has at most one BSDF");
             covering = material(nested);
         } else {
@@ -146,7 +160,37 @@ void SceneBuilder::addShape(const JsonNode& node) {
         }
     }
     shape.material = covering ? *covering : addMaterial(defaultMaterial(shape.emitter != kNone));
-    scene_.shapes.push_back(std::move(shape));
+    return shape;
+}
+
+const std::vector<Shape>& SceneBuilder::group(const JsonNode& node) {
+    const auto [known, isNew] = groups_.try_emplace(node.pointer());
+    if (!isNew) return known->second;
+    node.allowOnly("parameter of shapegroup", structuralKeys(node, {}));
+    std::vector<Shape> members;
+    for (const JsonNode& nested : nestedPlugins(node, {})) {
+        const std::string& name = pluginName(nested);
+        if (name == "instance" || name == "shapegroup") nested.fail("a shape group holds no groups and no instances");
+        if (name == "ref") nested.fail("the shapes of a shape group are written in it, not referred to");
+        members.push_back(shape(nested, true));
+    }
+    return known->second = makeGroup(std::move(members));
+}
+
+void SceneBuilder::addInstance(const JsonNode& node) {
+    std::optional<JsonNode> placed;
+    for (const JsonNode& nested : nestedPlugins(node, shapeParameters(node))) {
+        const JsonNode target = named(nested, PluginKind::Shapes, "shape group");
+        if (pluginName(target) != "shapegroup")
+            nested.fail(fmt::format("an instance places a shape group, not {}", inQuotes(pluginName(target))), "BSDFs belong to the shapes of the group");
+        if (placed) nested.fail("an instance places one shape group");
+        placed = target;
+    }
+    if (!placed) node.fail("an instance needs a shape group: a nested \"shapegroup\", or a reference to one");
+    const std::vector<Shape>& members = group(*placed);
+    if (scene_.shapes.size() + members.size() > kMostShapes)
+        node.fail(fmt::format("instances make more than {} shapes", kMostShapes), "make one mesh of the meshes of a group");
+    for (Shape& shape : readInstance(node, members)) scene_.shapes.push_back(std::move(shape));
 }
 
 void SceneBuilder::addEmitter(const JsonNode& node) {
@@ -161,13 +205,17 @@ Scene SceneBuilder::build(const JsonNode& film) {
     for (const JsonNode& entry : entries()) {
         const std::string& name = pluginName(entry);
         if (noteIfUnused(entry, context_)) continue;
-        if (contains(shapePlugins(), name))
-            addShape(entry);
-        else if (contains(bsdfPlugins(), name))
+        if (name == "shapegroup")
+            group(entry);
+        else if (name == "instance")
+            addInstance(entry);
+        else if (isA(PluginKind::Shapes, entry))
+            scene_.shapes.push_back(shape(entry, false));
+        else if (isA(PluginKind::Bsdfs, entry))
             material(entry);
-        else if (contains(emitterPlugins(), name))
+        else if (isA(PluginKind::Emitters, entry))
             addEmitter(entry);
-        else if (!contains(sensorPlugins(), name) && !(contains(texturePlugins(), name) && name != "rgb"))  // textures: when used
+        else if (!isA(PluginKind::Sensors, entry) && !(isA(PluginKind::Textures, entry) && name != "rgb"))  // textures: when used
             unknownPlugin(entry, "scene plugin", sceneEntries());
     }
     const JsonNode sensor = sensorNode();

@@ -1,5 +1,3 @@
-#include <unordered_map>
-
 #include "core/base/error.h"
 #include "core/scene/mesh_io.h"
 #include "core/scene/text_scanner.h"
@@ -14,15 +12,8 @@ public:
     Mesh read(std::string_view text);
 
 private:
-    /// Position, texture coordinate and normal of a face's corner, counted from 0; -1: none.
-    using Corner = std::array<int64_t, 3>;
-    struct CornerHash {
-        size_t operator()(const Corner& c) const {
-            uint64_t h = 0;
-            for (const int64_t i : c) h = (h ^ uint64_t(i)) * 0x9e3779b97f4a7c15ull, h ^= h >> 32;
-            return size_t(h);
-        }
-    };
+    /// Position, texture coordinate and normal of a face's corner, counted from 0, or kNone.
+    using Corner = std::array<uint32_t, 3>;
 
     template <class... Arguments>
     [[noreturn]] void error(fmt::format_string<Arguments...> format, Arguments&&... arguments) const {
@@ -31,7 +22,9 @@ private:
     }
 
     float coordinate(std::string_view& line) const;
-    int64_t index(std::string_view word, size_t count, const char* what) const;
+    uint32_t index(std::string_view word, size_t count, const char* what) const;
+    uint32_t& place(const Corner& corner);
+    void makeRoom();
     uint32_t vertex(std::string_view corner);
     void face(std::string_view line);
 
@@ -40,7 +33,8 @@ private:
     size_t line_ = 0;
     std::vector<Vec3f> positions_, normals_;
     std::vector<Vec2f> texcoords_;
-    std::unordered_map<Corner, uint32_t, CornerHash> vertices_;
+    std::vector<Corner> vertices_;  ///< what the mesh's vertices were made of
+    std::vector<uint32_t> table_ = std::vector<uint32_t>(64, kNone);  ///< their numbers, hashed: a power of 2, at most half full
     std::vector<uint32_t> corners_;
     Mesh mesh_;
 };
@@ -52,12 +46,29 @@ float ObjReader::coordinate(std::string_view& line) const {
     return float(*value);
 }
 
-int64_t ObjReader::index(std::string_view word, size_t count, const char* what) const {
-    if (word.empty()) return -1;
+uint32_t ObjReader::index(std::string_view word, size_t count, const char* what) const {
+    if (word.empty()) return kNone;
     const auto value = toNumber<int64_t>(word);
     if (!value || *value == 0 || *value > int64_t(count) || *value < -int64_t(count))
         error("\"{}\" is no {}: {} are there so far (counted from 1, or from the end with a minus)", word, what, count);
-    return *value > 0 ? *value - 1 : int64_t(count) + *value;
+    return uint32_t(*value > 0 ? *value - 1 : int64_t(count) + *value);
+}
+
+/// Where the number of the vertex made of a corner stands, or may be put.
+uint32_t& ObjReader::place(const Corner& corner) {
+    // Neighbours in the file stay neighbours where faces name positions only.
+    size_t i = corner[0] + size_t(corner[1]) * 0x9e3779b97f4a7c15ull + size_t(corner[2]) * 0xc2b2ae3d27d4eb4full;
+    while (true) {
+        uint32_t& vertex = table_[i & (table_.size() - 1)];
+        if (vertex == kNone || vertices_[vertex] == corner) return vertex;
+        ++i;
+    }
+}
+
+void ObjReader::makeRoom() {
+    if (2 * (vertices_.size() + 1) <= table_.size()) return;
+    table_.assign(2 * table_.size(), kNone);
+    for (uint32_t i = 0; i < vertices_.size(); ++i) place(vertices_[i]) = i;
 }
 
 uint32_t ObjReader::vertex(std::string_view corner) {
@@ -71,14 +82,17 @@ uint32_t ObjReader::vertex(std::string_view corner) {
     const Corner key{index(parts[0], positions_.size(), "vertex"),
                      index(parts[1], texcoords_.size(), "texture coordinate"),
                      index(parts[2], normals_.size(), "normal")};
-    if (key[0] < 0 || !rest.empty()) error("\"{}\" is no corner of a face", corner);
-    const auto [place, isNew] = vertices_.try_emplace(key, uint32_t(mesh_.positions.size()));
-    if (isNew) {
-        mesh_.positions.push_back(positions_[size_t(key[0])]);
-        mesh_.texcoords.push_back(key[1] < 0 ? Vec2f(0.0f) : texcoords_[size_t(key[1])]);
-        mesh_.normals.push_back(key[2] < 0 ? Vec3f(0.0f) : normals_[size_t(key[2])]);
-    }
-    return place->second;
+    if (key[0] == kNone || !rest.empty()) error("\"{}\" is no corner of a face", corner);
+    makeRoom();
+    uint32_t& known = place(key);
+    if (known != kNone) return known;
+    const uint32_t vertex = known = uint32_t(vertices_.size());
+    vertices_.push_back(key);
+    mesh_.positions.push_back(positions_[key[0]]);
+    // Vertices before the first that has a texture coordinate or a normal have none: zero.
+    if (key[1] != kNone) mesh_.texcoords.resize(vertex, Vec2f(0.0f)), mesh_.texcoords.push_back(texcoords_[key[1]]);
+    if (key[2] != kNone) mesh_.normals.resize(vertex, Vec3f(0.0f)), mesh_.normals.push_back(normals_[key[2]]);
+    return vertex;
 }
 
 void ObjReader::face(std::string_view line) {
@@ -106,8 +120,8 @@ Mesh ObjReader::read(std::string_view text) {
             face(line);
         }
     }
-    if (texcoords_.empty()) mesh_.texcoords.clear();
-    if (normals_.empty()) mesh_.normals.clear();
+    if (!texcoords_.empty()) mesh_.texcoords.resize(mesh_.positions.size(), Vec2f(0.0f));
+    if (!normals_.empty()) mesh_.normals.resize(mesh_.positions.size(), Vec3f(0.0f));
     return std::move(mesh_);
 }
 

@@ -75,7 +75,11 @@ private:
     /// One row: a number for each property; of lists their lengths, and in `list` the content of the wanted one.
     void row(const Element& element, std::optional<size_t> wantedList);
     void vertices(const Element& element);
+    bool isPlainTriangles(const Element& element) const;
+    bool plainTriangle();
     void faces(const Element& element);
+
+    static constexpr size_t kPlainTriangle = 1 + 3 * sizeof(uint32_t);
 
     std::string_view name_;
     size_t size_;
@@ -106,7 +110,7 @@ void PlyReader::addProperty(std::string_view line) {
 }
 
 void PlyReader::header() {
-    if (nextWord(rest_, "\r\n") != "ply") error("a PLY file begins with \"ply\"");
+    if (nextWord(rest_, isBlankOrLineEnd) != "ply") error("a PLY file begins with \"ply\"");
     nextLine(rest_);
     while (true) {
         if (rest_.empty()) error("the header has no end_header");
@@ -136,7 +140,7 @@ void PlyReader::header() {
 
 double PlyReader::scalar(const ScalarType& t) {
     if (format_ == Format::Ascii) {
-        const std::string_view word = nextWord(rest_, " \t\r\n");
+        const std::string_view word = nextWord(rest_, isBlankOrLineEnd);
         const auto value = toNumber<double>(word);
         if (!value) error("expected a number, found \"{}\"", word.substr(0, 40));
         return *value;
@@ -190,12 +194,36 @@ void PlyReader::vertices(const Element& element) {
     if (!at[0] || !at[1] || !at[2]) error("the vertices have no properties x, y and z");
     const bool hasNormals = at[3] && at[4] && at[5], hasTexcoords = at[6] && at[7];
     const auto value = [&](size_t i) { return float(row_[*at[i]]); };
+    // checkRoom() has seen that the file is long enough: at least a byte a number.
+    mesh_.positions.reserve(element.count + 1);
+    if (hasNormals) mesh_.normals.reserve(element.count);
+    if (hasTexcoords) mesh_.texcoords.reserve(element.count);
     for (uint64_t i = 0; i < element.count; ++i) {
         row(element, std::nullopt);
         mesh_.positions.emplace_back(value(0), value(1), value(2));
         if (hasNormals) mesh_.normals.emplace_back(value(3), value(4), value(5));
         if (hasTexcoords) mesh_.texcoords.emplace_back(value(6), value(7));
     }
+}
+
+/// Nothing but a list of 32-bit numbers, its length in a byte, as this machine has them: as most files are.
+bool PlyReader::isPlainTriangles(const Element& element) const {
+    const bool native = format_ == (std::endian::native == std::endian::little ? Format::Little : Format::Big);
+    if (!native || element.properties.size() != 1 || !element.properties[0].lengthType) return false;
+    const Property& list = element.properties[0];
+    return list.lengthType->size == 1 && (list.type->name == "int" || list.type->name == "uint");
+}
+
+/// Reads a face of three corners; leaves any other one, and damaged ones, for row().
+bool PlyReader::plainTriangle() {
+    if (rest_.size() < kPlainTriangle || rest_[0] != 3) return false;
+    std::array<uint32_t, 3> triangle;
+    std::memcpy(triangle.data(), rest_.data() + 1, sizeof triangle);
+    // Negative, if the numbers have a sign; beyond any mesh if not.
+    if ((triangle[0] | triangle[1] | triangle[2]) >> 31) return false;
+    mesh_.triangles.push_back(triangle);
+    rest_.remove_prefix(kPlainTriangle);
+    return true;
 }
 
 void PlyReader::faces(const Element& element) {
@@ -206,7 +234,10 @@ void PlyReader::faces(const Element& element) {
             error("{} is no vertex of a face", list_[i]);
         return uint32_t(list_[i]);
     };
+    const bool plain = isPlainTriangles(element);
+    if (plain) mesh_.triangles.reserve(std::min<uint64_t>(element.count, rest_.size() / kPlainTriangle));
     for (uint64_t i = 0; i < element.count; ++i) {
+        if (plain && plainTriangle()) continue;
         row(element, list);
         if (list_.size() < 3) error("a face has {} corners, at least 3 are needed", list_.size());
         for (size_t k = 2; k < list_.size(); ++k) mesh_.triangles.push_back({index(0), index(k - 1), index(k)});

@@ -11,6 +11,7 @@
 #include <xmmintrin.h>
 
 #include <limits>
+#include <map>
 #include <optional>
 
 namespace ulam {
@@ -119,10 +120,52 @@ struct RayTracer::Embree {
     RTCDevice device = rtcNewDevice("threads=1,set_affinity=0");
     RTCScene scene = nullptr;
     std::vector<std::unique_ptr<const Shape>> userShapes;  ///< what the callbacks look at
+    std::map<const Mesh*, RTCScene> groups;                ///< by the first mesh of a shape group
 
     ~Embree() {
         if (scene) rtcReleaseScene(scene);
+        for (const auto& group : groups) rtcReleaseScene(group.second);
         rtcReleaseDevice(device);
+    }
+
+    /// The ray tracer reads the mesh's own arrays, which must stay.
+    RTCGeometry triangles(const Mesh& mesh) {
+        RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+        rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, mesh.positions.data(), 0, sizeof(Vec3f), mesh.positions.size());
+        rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.triangles.data(), 0, sizeof(mesh.triangles[0]), mesh.triangles.size());
+        return geometry;
+    }
+
+    RTCGeometry sphere(const Sphere& sphere) {
+        RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_SPHERE_POINT);
+        auto* p = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, 4 * sizeof(float), 1));
+        p[0] = sphere.center.x, p[1] = sphere.center.y, p[2] = sphere.center.z, p[3] = sphere.radius;
+        return geometry;
+    }
+
+    /// The instance that these shapes begin with. A group is built when its first instance comes.
+    RTCGeometry instance(std::span<const Shape> shapes) {
+        const auto& first = std::get<MeshInstance>(shapes[0].geometry);
+        const auto [group, isNew] = groups.try_emplace(first.mesh.get());
+        if (isNew) {
+            group->second = rtcNewScene(device);
+            for (uint32_t member = 0; member < shapes.size(); ++member) {
+                const auto* next = std::get_if<MeshInstance>(&shapes[member].geometry);
+                if (!next || next->member != member) break;
+                attach(group->second, triangles(*next->mesh), member);
+            }
+            rtcCommitScene(group->second);
+        }
+        RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
+        rtcSetGeometryInstancedScene(geometry, group->second);
+        rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, first.toWorld.data());
+        return geometry;
+    }
+
+    static void attach(RTCScene scene, RTCGeometry geometry, size_t id) {
+        rtcCommitGeometry(geometry);
+        rtcAttachGeometryByID(scene, geometry, unsigned(id));
+        rtcReleaseGeometry(geometry);
     }
 
     template <class G>
@@ -149,33 +192,21 @@ RayTracer::RayTracer(RayTracer&&) noexcept = default;
 RayTracer& RayTracer::operator=(RayTracer&&) noexcept = default;
 
 RayTracer::RayTracer(std::span<const Shape> shapes) : embree_(std::make_unique<Embree>()) {
-    RTCDevice device = embree_->device;
-    embree_->scene = rtcNewScene(device);
+    embree_->scene = rtcNewScene(embree_->device);
     for (size_t i = 0; i < shapes.size(); ++i) {
-        RTCGeometry geometry;
-        if (const Mesh* mesh = std::get_if<Mesh>(&shapes[i].geometry)) {
-            geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-            auto* p = static_cast<Vec3f*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                                  sizeof(Vec3f), mesh->positions.size()));
-            auto* t = static_cast<std::array<uint32_t, 3>*>(rtcSetNewGeometryBuffer(
-                geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(mesh->triangles[0]), mesh->triangles.size()));
-            if (!p || !t) embree_->check();
-            std::copy(mesh->positions.begin(), mesh->positions.end(), p);
-            std::copy(mesh->triangles.begin(), mesh->triangles.end(), t);
-        } else if (std::holds_alternative<Disk>(shapes[i].geometry)) {
-            geometry = embree_->user<Disk>(shapes[i]);
-        } else if (std::holds_alternative<Cylinder>(shapes[i].geometry)) {
-            geometry = embree_->user<Cylinder>(shapes[i]);
+        const auto& geometry = shapes[i].geometry;
+        const auto add = [&](RTCGeometry built) { Embree::attach(embree_->scene, built, i); };
+        if (const Mesh* mesh = std::get_if<Mesh>(&geometry)) {
+            add(embree_->triangles(*mesh));
+        } else if (const MeshInstance* instance = std::get_if<MeshInstance>(&geometry)) {
+            if (instance->member == 0) add(embree_->instance(shapes.subspan(i)));
+        } else if (std::holds_alternative<Disk>(geometry)) {
+            add(embree_->user<Disk>(shapes[i]));
+        } else if (std::holds_alternative<Cylinder>(geometry)) {
+            add(embree_->user<Cylinder>(shapes[i]));
         } else {
-            const Sphere& sphere = std::get<Sphere>(shapes[i].geometry);
-            geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_SPHERE_POINT);
-            auto* p = static_cast<float*>(
-                rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, 4 * sizeof(float), 1));
-            p[0] = sphere.center.x, p[1] = sphere.center.y, p[2] = sphere.center.z, p[3] = sphere.radius;
+            add(embree_->sphere(std::get<Sphere>(geometry)));
         }
-        rtcCommitGeometry(geometry);
-        rtcAttachGeometryByID(embree_->scene, geometry, unsigned(i));
-        rtcReleaseGeometry(geometry);
     }
     rtcCommitScene(embree_->scene);
     embree_->check();
@@ -188,7 +219,9 @@ bool RayTracer::intersect(const Vec3f& origin, const Vec3f& direction, Hit& hit)
     ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     intersect1(embree_->scene, ray);
     if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
-    hit = {ray.hit.geomID, ray.hit.primID, ray.ray.tfar, {ray.hit.u, ray.hit.v}};
+    // An instance has the number of its first shape, and its geometries count on from there.
+    const uint32_t first = ray.hit.instID[0] == RTC_INVALID_GEOMETRY_ID ? 0 : ray.hit.instID[0];
+    hit = {first + ray.hit.geomID, ray.hit.primID, ray.ray.tfar, {ray.hit.u, ray.hit.v}};
     return true;
 }
 

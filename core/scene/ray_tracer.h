@@ -17,6 +17,7 @@ struct Hit {
 class RayTracer {
 public:
     RayTracer();
+    /// The meshes are read in place from then on: they must stay where they are, prepared.
     explicit RayTracer(std::span<const Shape> shapes);
     ~RayTracer();
     RayTracer(RayTracer&&) noexcept;

@@ -6,11 +6,12 @@ namespace ulam {
 
 void Scene::finalize() {
     Imath::Box3f box;
-    for (Shape& shape : shapes) {
-        shape.prepare();
-        box.extendBy(shape.bounds());
-    }
+    for (const Shape& shape : shapes) box.extendBy(shape.bounds());
     if (!box.isEmpty()) bounds_ = {box.center(), std::max(1e-6f, length(box.size()) / 2) * 1.0001f};
+
+    // First, since building takes more memory for a while than what follows.
+    rays_ = RayTracer(shapes);
+    for (Shape& shape : shapes) shape.prepare();
 
     for (Emitter& emitter : emitters)
         if (auto* area = std::get_if<AreaEmitter>(&emitter); area && area->texture != kNone) area->emitted = meanRadiance(*area);
@@ -23,7 +24,6 @@ void Scene::finalize() {
     for (double p : powers) total += p;
     if (!(total > 0)) fail(ExitCode::InvalidConfig, "the scene has no light: add an emitter with positive radiance or intensity");
     emitterChoice_ = DiscreteDistribution(powers);
-    rays_ = RayTracer(shapes);
 }
 
 Spectrum Scene::meanRadiance(const AreaEmitter& area) const {
@@ -48,9 +48,9 @@ void Scene::vertexAt(const Vec3f& origin, const Vec3f& direction, const Hit& hit
     const Shape& shape = shapes[hit.shape];
     if (const Mesh* mesh = std::get_if<Mesh>(&shape.geometry)) {
         // From the triangle rather than the ray: the error then does not grow with the ray's length.
-        const auto& t = mesh->triangles[hit.primitive];
-        const Vec3f &a = mesh->positions[t[0]], &b = mesh->positions[t[1]], &c = mesh->positions[t[2]];
-        v.position = a + (b - a) * hit.uv.x + (c - a) * hit.uv.y;
+        v.position = mesh->point(hit.primitive, hit.uv);
+    } else if (const MeshInstance* instance = std::get_if<MeshInstance>(&shape.geometry)) {
+        v.position = instance->point(hit.primitive, hit.uv);
     } else if (const Sphere* sphere = std::get_if<Sphere>(&shape.geometry)) {
         const Vec3f outward = normalize(origin + direction * hit.distance - sphere->center);
         v.position = sphere->center + outward * sphere->radius;

@@ -84,7 +84,7 @@ public:
         if (flags & kHasNormals) mesh.normals = points<Vec3f>(data, vertices, size);
         if (flags & kHasTexcoords) mesh.texcoords = points<Vec2f>(data, vertices, size);
         if (flags & kHasColors) points<Vec3f>(data, vertices, size);
-        for (uint64_t i = 0; i < triangles; ++i) data.read(&mesh.triangles.emplace_back(), sizeof mesh.triangles[0]);
+        readAll(data, mesh.triangles, triangles);
         return result;
     }
 
@@ -117,21 +117,31 @@ private:
         return {first, last};
     }
 
-    /// Read piece by piece, so that a small file that promises much costs little.
+    /// Read piece by piece, so that a small file that promises much costs little: memory grows only as data come.
+    template <class T>
+    static void readAll(Inflater& data, std::vector<T>& values, uint64_t count) {
+        constexpr uint64_t kPiece = 1 << 16;
+        while (values.size() < count) {
+            const size_t have = values.size(), more = size_t(std::min(kPiece, count - have));
+            // Doubling would leave up to half of the room unused; the last step takes what is needed.
+            if (have + more > values.capacity()) values.reserve(size_t(std::min(count + 1, 2 * uint64_t(have + more))));
+            values.resize(have + more);
+            data.read(&values[have], more * sizeof(T));
+        }
+    }
     template <class P>
     static std::vector<P> points(Inflater& data, uint64_t count, size_t size) {
         constexpr int kComponents = int(sizeof(P) / sizeof(float));
         std::vector<P> result;
+        if (size == 4) {
+            readAll(data, result, count);
+            return result;
+        }
         std::array<double, kComponents> wide;
         for (uint64_t i = 0; i < count; ++i) {
-            P point;
-            if (size == 4) {
-                data.read(&point, sizeof point);
-            } else {
-                data.read(wide.data(), sizeof wide);
-                for (int k = 0; k < kComponents; ++k) point[k] = float(wide[size_t(k)]);
-            }
-            result.push_back(point);
+            data.read(wide.data(), sizeof wide);
+            P& point = result.emplace_back();
+            for (int k = 0; k < kComponents; ++k) point[k] = float(wide[size_t(k)]);
         }
         return result;
     }

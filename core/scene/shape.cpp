@@ -4,9 +4,18 @@ namespace ulam {
 namespace {
 
 /// Along the geometric normal, as long as twice the area; in double, for slivers far from the origin.
-Vec3d areaVector(const Mesh& mesh, const std::array<uint32_t, 3>& t) {
+Vec3d areaVector(const Mesh& mesh, uint32_t triangle) {
+    const auto& t = mesh.triangles[triangle];
     const Vec3d a(mesh.positions[t[0]]), b(mesh.positions[t[1]]), c(mesh.positions[t[2]]);
     return (b - a).cross(c - a);
+}
+/// What toWorldNormal makes of a vector of twice the area is a vector of twice the area.
+Vec3d areaVector(const MeshInstance& instance, uint32_t triangle) { return instance.toWorldNormal(areaVector(*instance.mesh, triangle)); }
+
+/// Of a mesh that has normals; zero where opposite ones cancel out.
+Vec3f interpolatedNormal(const Mesh& mesh, const Vertex& v) {
+    const auto& [i, j, k] = mesh.triangles[v.primitive];
+    return mesh.normals[i] * (1 - v.uv.x - v.uv.y) + mesh.normals[j] * v.uv.x + mesh.normals[k] * v.uv.y;
 }
 
 Vec3f inAxes(const Axes& axes, const Vec3f& v) { return {dot(v, axes[0]), dot(v, axes[1]), dot(v, axes[2])}; }
@@ -22,6 +31,7 @@ Vec2f texcoordOf(const Mesh& mesh, const Vertex& v) {
     const auto& [i, j, k] = mesh.triangles[v.primitive];
     return mesh.texcoords[i] * (1 - v.uv.x - v.uv.y) + mesh.texcoords[j] * v.uv.x + mesh.texcoords[k] * v.uv.y;
 }
+Vec2f texcoordOf(const MeshInstance& instance, const Vertex& v) { return texcoordOf(*instance.mesh, v); }
 Vec2f texcoordOf(const Sphere& sphere, const Vertex& v) {
     const Vec3f p = inAxes(sphere.axes, v.position - sphere.center);
     return {float(inverseAzimuth(p.x, p.y)), float(std::atan2(std::hypot(p.x, p.y), p.z) / kPi)};
@@ -32,7 +42,7 @@ Vec2f texcoordOf(const Cylinder& cylinder, const Vertex& v) {
     return {float(inverseAzimuth(p.x, p.y)), p.z / cylinder.length};
 }
 
-Tangents tangentsOf(const Mesh& mesh, const Vertex& v) {
+Tangents tangentsOf(const Mesh& mesh, const Vertex& v, const Vec3f& normal) {
     if (!mesh.texcoords.empty()) {
         const auto& [i, j, k] = mesh.triangles[v.primitive];
         const Vec2f a = mesh.texcoords[j] - mesh.texcoords[i], b = mesh.texcoords[k] - mesh.texcoords[i];
@@ -43,8 +53,13 @@ Tangents tangentsOf(const Mesh& mesh, const Vertex& v) {
         const auto usable = [](const Vec3f& d) { return length2(d) > 0 && std::isfinite(length2(d)); };
         if (usable(t.u) && usable(t.v)) return t;
     }
-    const Frame frame(v.normal);
+    const Frame frame(normal);
     return {frame.s, frame.t};
+}
+Tangents tangentsOf(const Mesh& mesh, const Vertex& v) { return tangentsOf(mesh, v, v.normal); }
+Tangents tangentsOf(const MeshInstance& instance, const Vertex& v) {
+    const Tangents t = tangentsOf(*instance.mesh, v, Vec3f(areaVector(*instance.mesh, v.primitive).normalized()));
+    return {Vec3f(instance.toWorldVector(Vec3d(t.u))), Vec3f(instance.toWorldVector(Vec3d(t.v)))};
 }
 /// ∂p/∂u of an azimuth 2πu around the third axis.
 Vec3f aroundAxis(const Axes& axes, float x, float y) { return (axes[1] * x - axes[0] * y) * float(2 * kPi); }
@@ -67,15 +82,31 @@ Tangents tangentsOf(const Cylinder& cylinder, const Vertex& v) {
 
 }  // namespace
 
+void Mesh::prepare() {
+    box.makeEmpty();
+    for (const Vec3f& p : positions) box.extendBy(p);
+    // It reads 16 bytes a vertex.
+    positions.reserve(positions.size() + 1);
+}
+
+Vec3d MeshInstance::toWorldNormal(const Vec3d& n) const {
+    // By the matrix of cofactors: of the inverse transpose without the division. The front stays the front in a mirror.
+    const Vec3d x(toWorld[0]), y(toWorld[1]), z(toWorld[2]), yz = y.cross(z);
+    const Vec3d image = yz * n.x + z.cross(x) * n.y + x.cross(y) * n.z;
+    return x.dot(yz) > 0 ? image : -image;
+}
+
 void Shape::setNormals(Vertex& v) const {
     if (const Mesh* mesh = std::get_if<Mesh>(&geometry)) {
         v.normal = v.shadingNormal = mesh->faceNormals[v.primitive];
         if (mesh->normals.empty()) return;
-        const auto& [i, j, k] = mesh->triangles[v.primitive];
-        const Vec3f n =
-            mesh->normals[i] * (1 - v.uv.x - v.uv.y) + mesh->normals[j] * v.uv.x + mesh->normals[k] * v.uv.y;
-        // Opposite normals may cancel out.
+        const Vec3f n = interpolatedNormal(*mesh, v);
         if (length2(n) > 0) v.shadingNormal = normalize(n);
+    } else if (const MeshInstance* instance = std::get_if<MeshInstance>(&geometry)) {
+        v.normal = v.shadingNormal = Vec3f(areaVector(*instance, v.primitive).normalized());
+        if (instance->mesh->normals.empty()) return;
+        const Vec3f n = interpolatedNormal(*instance->mesh, v);
+        if (length2(n) > 0) v.shadingNormal = Vec3f(instance->toWorldNormal(Vec3d(n)).normalized());
     } else if (const Disk* disk = std::get_if<Disk>(&geometry)) {
         v.normal = v.shadingNormal = disk->normal;
     } else {
@@ -89,7 +120,8 @@ Vec2f Shape::texcoord(const Vertex& v) const {
     return std::visit([&](const auto& g) { return texcoordOf(g, v); }, geometry);
 }
 
-Tangents Shape::tangents(const Vertex& v) const {
+// Out of line: it is rarely needed, and makes what is needed at every vertex too large to be inlined.
+[[gnu::noinline]] Tangents Shape::tangents(const Vertex& v) const {
     return std::visit([&](const auto& g) { return tangentsOf(g, v); }, geometry);
 }
 
@@ -98,12 +130,12 @@ Vertex Shape::samplePoint(uint32_t shapeIndex, double u, double v) const {
     x.kind = Vertex::Kind::Surface;
     x.lobe = Lobe::Smooth;
     x.shape = shapeIndex;
-    if (const Mesh* mesh = std::get_if<Mesh>(&geometry)) {
+    const Mesh* mesh = std::get_if<Mesh>(&geometry);
+    const MeshInstance* instance = std::get_if<MeshInstance>(&geometry);
+    if (mesh || instance) {
         x.primitive = uint32_t(triangles.sample(u));
         x.uv = squareToTriangle(u, v);
-        const auto& [i, j, k] = mesh->triangles[x.primitive];
-        const Vec3f &a = mesh->positions[i], &b = mesh->positions[j], &c = mesh->positions[k];
-        x.position = a + (b - a) * x.uv.x + (c - a) * x.uv.y;
+        x.position = mesh ? mesh->point(x.primitive, x.uv) : instance->point(x.primitive, x.uv);
     } else if (const Sphere* sphere = std::get_if<Sphere>(&geometry)) {
         x.position = sphere->center + squareToSphere(u, v) * sphere->radius;
     } else if (const Disk* disk = std::get_if<Disk>(&geometry)) {
@@ -143,18 +175,26 @@ void Shape::prepare() {
         area = 2 * kPi * cylinder->radius * cylinder->length;
         return;
     }
-    Mesh& mesh = std::get<Mesh>(geometry);
-    std::vector<double> areas;
-    mesh.faceNormals.clear();
-    mesh.faceNormals.reserve(mesh.triangles.size());
-    area = 0;
-    for (const auto& t : mesh.triangles) {
-        const Vec3d n = areaVector(mesh, t);
-        mesh.faceNormals.emplace_back(n.normalized());
-        areas.push_back(n.length() / 2);
-        area += areas.back();
+    Mesh* mesh = std::get_if<Mesh>(&geometry);
+    const auto count = uint32_t(triangleMesh()->triangles.size());
+    const auto vectorOf = [&](uint32_t i) { return mesh ? areaVector(*mesh, i) : areaVector(std::get<MeshInstance>(geometry), i); };
+    if (mesh) {
+        mesh->faceNormals.resize(count);
+        for (uint32_t i = 0; i < count; ++i) mesh->faceNormals[i] = Vec3f(vectorOf(i).normalized());
     }
-    if (emitter != kNone) triangles = DiscreteDistribution(areas);
+    if (emitter == kNone) return;
+    std::vector<double> areas(count);
+    area = 0;
+    for (uint32_t i = 0; i < count; ++i) {
+        areas[i] = vectorOf(i).length() / 2;
+        area += areas[i];
+    }
+    triangles = DiscreteDistribution(areas);
+}
+
+const Mesh* Shape::triangleMesh() const {
+    if (const MeshInstance* instance = std::get_if<MeshInstance>(&geometry)) return instance->mesh.get();
+    return std::get_if<Mesh>(&geometry);
 }
 
 Imath::Box3f Shape::bounds() const {
@@ -164,7 +204,12 @@ Imath::Box3f Shape::bounds() const {
         box.extendBy(center + reach);
     };
     if (const Mesh* mesh = std::get_if<Mesh>(&geometry)) {
-        for (const Vec3f& p : mesh->positions) box.extendBy(p);
+        return mesh->box;
+    } else if (const MeshInstance* instance = std::get_if<MeshInstance>(&geometry)) {
+        const Imath::Box3f& own = instance->mesh->box;
+        for (int corner = 0; corner < 8; ++corner)
+            box.extendBy(Vec3f(instance->toWorldPoint(
+                {corner & 1 ? own.max.x : own.min.x, corner & 2 ? own.max.y : own.min.y, corner & 4 ? own.max.z : own.min.z})));
     } else if (const Sphere* sphere = std::get_if<Sphere>(&geometry)) {
         around(sphere->center, Vec3f(sphere->radius));
     } else if (const Disk* disk = std::get_if<Disk>(&geometry)) {

@@ -7,12 +7,17 @@
 
 namespace ulam {
 
-/// The next word of a line, which is taken off it; empty at the end. Separators are blanks.
-inline std::string_view nextWord(std::string_view& line, std::string_view separators = " \t\r") {
-    const size_t first = line.find_first_not_of(separators);
-    line.remove_prefix(first == std::string_view::npos ? line.size() : first);
-    const std::string_view word = line.substr(0, line.find_first_of(separators));
-    line.remove_prefix(word.size());
+inline bool isBlank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
+inline bool isBlankOrLineEnd(char c) { return isBlank(c) || c == '\n'; }
+
+/// The next word of a line, which is taken off it; empty at the end.
+inline std::string_view nextWord(std::string_view& line, bool (*isSeparator)(char) = isBlank) {
+    size_t first = 0;
+    while (first < line.size() && isSeparator(line[first])) ++first;
+    size_t end = first;
+    while (end < line.size() && !isSeparator(line[end])) ++end;
+    const std::string_view word = line.substr(first, end - first);
+    line.remove_prefix(end);
     return word;
 }
 

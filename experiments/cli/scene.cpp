@@ -5,7 +5,7 @@
 
 #include "core/base/error.h"
 #include "core/config/suggest.h"
-#include "core/scene/export/mitsuba3.h"
+#include "core/scene/export/mitsuba.h"
 #include "core/scene/export/pbrt4.h"
 #include "experiments/cli/arguments.h"
 #include "experiments/cli/commands.h"
@@ -25,7 +25,8 @@ struct Exporter {
     const char* sceneFile;
     std::vector<std::string> (*write)(const SceneDescription&, const std::filesystem::path&);
 };
-constexpr std::array kExporters{Exporter{"mitsuba3", "scene.xml", exportMitsuba3}, Exporter{"pbrt4", "scene.pbrt", exportPbrt4}};
+constexpr std::array kExporters{Exporter{"mitsuba3", "scene.xml", exportMitsuba3}, Exporter{"mitsuba06", "scene.xml", exportMitsuba06},
+                                Exporter{"pbrt4", "scene.pbrt", exportPbrt4}};
 
 void exportScene(const SceneDescription& description, const std::string& format, const std::string& folder) {
     std::vector<std::string> formats;
@@ -41,9 +42,11 @@ void exportScene(const SceneDescription& description, const std::string& format,
 
 void printScene(const SceneDescription& description, const SceneArguments& a) {
     const Scene scene = description.build();
-    std::size_t triangles = 0;
-    for (const Shape& shape : scene.shapes)
-        if (const Mesh* mesh = std::get_if<Mesh>(&shape.geometry)) triangles += mesh->triangles.size();
+    std::size_t triangles = 0, instances = 0;
+    for (const Shape& shape : scene.shapes) {
+        if (const Mesh* mesh = shape.triangleMesh()) triangles += mesh->triangles.size();
+        instances += std::holds_alternative<MeshInstance>(shape.geometry);
+    }
     const BoundingSphere& bounds = scene.bounds();
     if (a.json) {
         fmt::print("{}\n",
@@ -52,6 +55,7 @@ void printScene(const SceneDescription& description, const SceneArguments& a) {
                          {"width", scene.sensor->width()},
                          {"height", scene.sensor->height()},
                          {"shapes", scene.shapes.size()},
+                         {"mesh_instances", instances},
                          {"triangles", triangles},
                          {"materials", scene.materials.size()},
                          {"emitters", scene.emitters.size()},
@@ -63,8 +67,8 @@ void printScene(const SceneDescription& description, const SceneArguments& a) {
                          {"dictionary", description.dictionary()}}));
         return;
     }
-    fmt::print("image      {} x {}\nshapes     {} ({} triangles)\nmaterials  {}\nemitters   {}\n",
-               scene.sensor->width(), scene.sensor->height(), scene.shapes.size(), triangles, scene.materials.size(),
+    fmt::print("image      {} x {}\nshapes     {} ({} of them meshes of instances; {} triangles)\nmaterials  {}\nemitters   {}\n",
+               scene.sensor->width(), scene.sensor->height(), scene.shapes.size(), instances, triangles, scene.materials.size(),
                scene.emitters.size());
     fmt::print("bounds     center {:.6g} {:.6g} {:.6g}, radius {:.6g}\n", bounds.center.x, bounds.center.y,
                bounds.center.z, bounds.radius);
@@ -100,8 +104,8 @@ void addSceneCommand(CLI::App& app) {
         ->allow_extra_args(false);
     command.add_flag("--info", a->info, "count what is in it");
     command.add_flag("--json", a->json, "as JSON, with the expanded dictionary");
-    command.add_option("--export", a->target, "write the scene for Mitsuba 3 or pbrt-v4 into a folder")
-        ->type_name("mitsuba3|pbrt4 DIR")
+    command.add_option("--export", a->target, "write the scene for Mitsuba 3, Mitsuba 0.6 or pbrt-v4 into a folder")
+        ->type_name("mitsuba3|mitsuba06|pbrt4 DIR")
         ->expected(2);
     command.callback([a] { runScene(*a); });
 }

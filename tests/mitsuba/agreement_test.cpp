@@ -10,7 +10,7 @@
 
 #include "core/base/file.h"
 #include "core/base/sha256.h"
-#include "core/scene/export/mitsuba3.h"
+#include "core/scene/export/mitsuba.h"
 #include "experiments/verify/work.h"
 #include "tests/experiments/statistics/simulation.h"
 #include "tests/mitsuba/matrix.h"

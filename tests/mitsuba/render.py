@@ -2,9 +2,11 @@
 """Independent runs of Mitsuba 3's path tracer: render.py SCENE.xml OUT max_depth=D runs=N error=E
 
 OUT gets the images one after another, as 32-bit floats (run, row, column, R G B). Each run has as many samples per
-pixel as it takes for the mean of all images to have the relative standard error E.
+pixel as it takes for the mean of all images to have the relative standard error E. Images of a pilot, or of runs that it
+sized too small, are not used.
 """
 
+import itertools
 import os
 import sys
 
@@ -12,6 +14,7 @@ import mitsuba
 import numpy
 
 PILOT_SAMPLES = 4
+RESERVE = 1.15  # the standard error may be larger than asked for by this factor
 LARGEST_BATCH = 64  # samples per pixel: a call's memory grows with them
 # The seed of a pixel is that of the call plus the pixel's number, so calls need seeds that are as far apart as the film
 # has pixels. No seed gives the same image each time.
@@ -41,10 +44,15 @@ def main():
     runs, error = int(options["runs"]), float(options["error"])
     mitsuba.set_variant("scalar_rgb")
     renderer = Renderer(scene, int(options["max_depth"]))
-    pilot = numpy.array([renderer.run(PILOT_SAMPLES).mean() for _ in range(runs)])
-    found = pilot.std(ddof=1) / pilot.mean() / runs**0.5
-    samples = max(PILOT_SAMPLES, round(PILOT_SAMPLES * (found / error) ** 2))
-    images = numpy.array([renderer.run(samples) for _ in range(runs)], numpy.float32)
+    samples = PILOT_SAMPLES
+    for attempt in itertools.count():
+        images = numpy.array([renderer.run(samples) for _ in range(runs)], numpy.float32)
+        energy = images.mean(axis=(1, 2, 3), dtype=numpy.float64)
+        found = energy.std(ddof=1) / energy.mean() / runs**0.5
+        # Where few samples carry most of the light a pilot may see none of them.
+        if attempt > 0 and found <= RESERVE * error:
+            break
+        samples = max(PILOT_SAMPLES, round(samples * (found / error) ** 2))
     with open(out + ".tmp", "wb") as file:
         file.write(images.tobytes())
     os.replace(out + ".tmp", out)

@@ -191,6 +191,32 @@ Json layers() {
     return scene;
 }
 
+/// Two groups, placed by turned, stretched, mirrored and sheared instances: one of meshes (smooth and textured), one of what
+/// has to stay round.
+Json instances() {
+    Json scene = room();
+    scene["lamp"] = lamp();
+    Json tile = wall(0.25, {1, 0, 0}, -90, {0, -0.2, 0}, 0.6);
+    tile["bsdf"]["reflectance"] = {{"type", "checkerboard"}, {"color0", 0.2}, {"color1", {0.8, 0.7, 0.3}}, {"to_uv", {{{"type", "scale"}, {"value", {4, 3, 1}}}}}};
+    Json brushed = wall(0.2, {0, 1, 0}, 20, {0.1, 0.25, 0.1}, 0.6);
+    brushed["bsdf"] = {{"type", "twosided"}, {"inside", {{"type", "roughconductor"}, {"distribution", "ggx"}, {"alpha_u", 0.1}, {"alpha_v", 0.4}, {"eta", {0.2, 0.9, 1.1}}, {"k", {3.9, 2.4, 2.2}}}}};
+    Json gem = octahedron({0, 0, 0}, 0.2);
+    gem["bsdf"] = {{"type", "dielectric"}};
+    scene["flower"] = {{"type", "shapegroup"}, {"tile", tile}, {"gem", gem}, {"brushed", brushed}};
+    scene["round"] = {{"type", "shapegroup"}, {"ball", ball({0, 0.1, 0}, 0.1, {{"type", "conductor"}})}, {"bud", octahedron({0, 0.35, 0}, 0.12)},
+                      {"stem", {{"type", "cylinder"}, {"p0", {0, -0.3, 0}}, {"p1", {0, 0, 0}}, {"radius", 0.04}, {"bsdf", {{"type", "twosided"}, {"inside", diffuse(0.5)}}}}}};
+    const auto place = [&](const char* group, const Json& steps) {
+        return Json{{"type", "instance"}, {"group", {{"type", "ref"}, {"id", group}}}, {"to_world", steps}};
+    };
+    const auto move = [](const Json& to) { return Json{{"type", "translate"}, {"value", to}}; };
+    scene["one"] = place("flower", {move({-0.55, 0.4, 0})});
+    scene["two"] = place("flower", {{{"type", "scale"}, {"value", {-1.2, 0.8, 1.5}}}, {{"type", "rotate"}, {"axis", {1, 2, 0.5}}, {"angle", 70}}, move({0.4, 0.5, 0.3})});
+    scene["three"] = place("flower", {{{"type", "matrix"}, {"value", {1, 0.4, 0, 0, 0, 1, 0.3, 1.2, 0.2, 0, 0.7, 0.2, 0, 0, 0, 1}}}});
+    scene["four"] = place("round", {{{"type", "scale"}, {"value", {1.3, 1.3, -1.3}}}, {{"type", "rotate"}, {"axis", {0, 0, 1}}, {"angle", -30}}, move({0.5, 1.2, -0.3})});
+    scene["five"] = place("round", {move({-0.2, 0.3, 0.8})});
+    return scene;
+}
+
 /// Holds sky.exr, a small picture, and normals.exr, which holds normals.
 const std::filesystem::path& sceneFolder() {
     static const struct Folder {
@@ -227,6 +253,7 @@ const std::vector<NamedScene>& pathScenes() {
         {"many_lights", manyLights(), true, true},  {"shading_normals", shadingNormals(), true, false},
         {"rough", roughThings(), true, false},      {"thin_lens", thinLens(), true, false},     {"sun_and_sky", sunAndSky(), true, true},
         {"layers", layers(), true, false},
+        {"instances", instances(), true, false},
     };
     return scenes;
 }

@@ -66,16 +66,21 @@ Json blended(const std::vector<JsonNode>& nested, const std::vector<double>& wei
     return {{"type", "blendbsdf"}, {"weight", 1 - share}, {"a", nested[i].json()}, {"b", blended(nested, weights, i + 1, rest - weights[i])}};
 }
 
-/// What blends of two can say too, with the weight that other renderers want written.
+/// What blends of two can say too.
 std::optional<Json> inBlends(const JsonNode& node) {
     if (pluginName(node) == "mixturebsdf") {
         const auto nested = nestedPlugins(node, {});
         return blended(nested, node.at("weights").numbers(nested.size()), 0, 1);
     }
-    if (pluginName(node) != "blendbsdf" || node.find("weight")) return std::nullopt;
-    Json result = node.json();
+    return std::nullopt;
+}
+
+/// Other renderers want a blend's weight written.
+std::optional<Nearest> weighted(const JsonNode& blend) {
+    if (blend.find("weight")) return std::nullopt;
+    Json result = blend.json();
     result["weight"] = 0.5;
-    return result;
+    return Nearest{std::move(result), true};
 }
 
 /// A coat over a diffuse base, or the base alone.
@@ -118,15 +123,22 @@ Json plainPrincipled(const JsonNode& node) {
 std::optional<Nearest> nearestInMitsuba3(const JsonNode& node) {
     const std::string& type = pluginName(node);
     if (const auto exact = inBlends(node)) return Nearest{*exact, true};
+    if (type == "blendbsdf") return weighted(node);
     if (type == "coating" || type == "roughcoating") return Nearest{coated(node, type == "roughcoating"), false};
     if (type == "roughdiffuse") return Nearest{{{"type", "diffuse"}, {"reflectance", given(node, "reflectance", 0.5)}}, false};
     if (type == "phong" || type == "ward") return Nearest{glossyPrincipled(node), false};
     return std::nullopt;
 }
 
+std::optional<Nearest> nearestInMitsuba06(const JsonNode& node) {
+    if (pluginName(node) == "principled") return Nearest{plainPrincipled(node), false};
+    return pluginName(node) == "blendbsdf" ? weighted(node) : std::nullopt;
+}
+
 std::optional<Nearest> nearestInPbrt4(const JsonNode& node) {
     const std::string& type = pluginName(node);
     if (const auto exact = inBlends(node)) return Nearest{*exact, true};
+    if (type == "blendbsdf") return weighted(node);
     if (type == "coating" || type == "roughcoating") return Nearest{coated(node, type == "roughcoating"), false};
     if (type == "roughdiffuse") return Nearest{{{"type", "diffuse"}, {"reflectance", given(node, "reflectance", 0.5)}}, false};
     if (type == "phong" || type == "ward") {

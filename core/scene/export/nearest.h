@@ -21,6 +21,10 @@ struct Nearest {
 ///                          and rises towards grazing angles
 std::optional<Nearest> nearestInMitsuba3(const JsonNode& node);
 
+/// The same for Mitsuba 0.6, which lacks `principled` only: roughconductor, roughdielectric or roughplastic, by what there is
+/// most of.
+std::optional<Nearest> nearestInMitsuba06(const JsonNode& node);
+
 /// The same for pbrt-v4, in Ulam's plugins that pbrt has.
 ///   roughdiffuse  diffuse, without the roughness
 ///   phong, ward   roughplastic with the same base, mean lobe width and reflectance at normal incidence

@@ -48,6 +48,7 @@ std::vector<Vec3f> vertexNormals(const Mesh& mesh) {
         }
     }
     std::vector<Vec3f> normals;
+    normals.reserve(sums.size());
     for (const Vec3d& sum : sums) normals.emplace_back(sum.normalized());
     return normals;
 }
@@ -85,6 +86,7 @@ Mesh placeMesh(Mesh mesh, const MeshPlacement& placement, const JsonNode& shape,
     for (auto& triangle : mesh.triangles)
         if (backward(triangle)) std::swap(triangle[1], triangle[2]);
     if (mesh.normals.empty() && placement.normals == MeshPlacement::Normals::Smooth) mesh.normals = vertexNormals(mesh);
+    mesh.prepare();
     return mesh;
 }
 

@@ -1,6 +1,7 @@
 #include "core/scene/loading/shapes.h"
 
 #include "core/scene/loading/geometry.h"
+#include "core/scene/loading/groups.h"
 #include "core/scene/loading/plugin_table.h"
 #include "core/scene/loading/transform.h"
 #include "core/scene/mesh_io.h"
@@ -192,7 +193,11 @@ Shape readCylinder(const JsonNode& node, LoadContext&) {
     return shape;
 }
 
-Shape placeFromFile(Mesh mesh, const FileParameters& p, const JsonNode& node, LoadContext& context) {
+/// `read` makes a mesh of the file's bytes, which are let go before the mesh is worked on.
+template <class Read>
+Shape placeFromFile(const Read& read, FileParameters& p, const JsonNode& node, LoadContext& context) {
+    const JsonNode filename = node.at("filename");
+    Mesh mesh = read(context.read(filename), filename.string());
     MeshPlacement placement = placementOf(p);
     placement.normals = p.faceNormals ? MeshPlacement::Normals::Flat : MeshPlacement::Normals::Smooth;
     Shape shape;
@@ -201,23 +206,24 @@ Shape placeFromFile(Mesh mesh, const FileParameters& p, const JsonNode& node, Lo
 }
 
 Shape readObjShape(const JsonNode& node, LoadContext& context) {
-    const auto p = parsePlugin<ObjParameters>(node);
-    const JsonNode filename = node.at("filename");
-    return placeFromFile(readObj(context.read(filename), filename.string(), p.flipTexCoords), p, node, context);
+    auto p = parsePlugin<ObjParameters>(node);
+    const auto read = [&](const std::string& bytes, const std::string& name) { return readObj(bytes, name, p.flipTexCoords); };
+    return placeFromFile(read, p, node, context);
 }
 
 Shape readPlyShape(const JsonNode& node, LoadContext& context) {
-    const auto p = parsePlugin<FileParameters>(node);
-    const JsonNode filename = node.at("filename");
-    return placeFromFile(readPly(context.read(filename), filename.string()), p, node, context);
+    auto p = parsePlugin<FileParameters>(node);
+    return placeFromFile(readPly, p, node, context);
 }
 
 Shape readSerializedShape(const JsonNode& node, LoadContext& context) {
     auto p = parsePlugin<SerializedParameters>(node);
-    const JsonNode filename = node.at("filename");
-    SerializedMesh read = readSerialized(context.read(filename), filename.string(), p.shapeIndex);
-    p.faceNormals |= read.faceNormals;
-    return placeFromFile(std::move(read.mesh), p, node, context);
+    const auto read = [&](const std::string& bytes, const std::string& name) {
+        SerializedMesh serialized = readSerialized(bytes, name, p.shapeIndex);
+        p.faceNormals |= serialized.faceNormals;
+        return std::move(serialized.mesh);
+    };
+    return placeFromFile(read, p, node, context);
 }
 
 std::vector<Vec3f> parsePoints(const JsonNode& node) {
@@ -276,7 +282,16 @@ const PluginTable<Shape(const JsonNode&, LoadContext&)>& table() {
 }  // namespace
 
 std::vector<PluginInfo> shapePlugins() {
-    return table().infos();
+    std::vector<PluginInfo> all = table().infos();
+    for (PluginInfo& plugin : groupPlugins()) all.push_back(std::move(plugin));
+    return all;
+}
+
+const std::vector<ParameterInfo>& shapeParameters(const JsonNode& node) {
+    static const std::vector<PluginInfo> all = shapePlugins();
+    for (const PluginInfo& plugin : all)
+        if (plugin.name == pluginName(node)) return plugin.parameters;
+    unknownPlugin(node, "shape", all);
 }
 
 Shape readShape(const JsonNode& node, LoadContext& context) {

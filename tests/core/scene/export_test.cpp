@@ -1,7 +1,7 @@
 #include <pugixml.hpp>
 
 #include "core/base/file.h"
-#include "core/scene/export/mitsuba3.h"
+#include "core/scene/export/mitsuba.h"
 #include "core/scene/mesh_io.h"
 #include "tests/core/config/error_of.h"
 #include "tests/core/scene/load_text.h"
@@ -217,4 +217,46 @@ TEST_CASE("export: an earlier export is replaced, other people's files are not")
         CHECK(fs::exists(files.path / "real" / "scene.xml"));
     }
     CHECK(std::distance(fs::directory_iterator(folder.parent_path()), {}) == 1);  // nothing temporary is left
+}
+
+TEST_CASE("export: groups and instances, inline meshes in groups as files, the same bytes again from what was written") {
+    const std::string text = sceneWith(R"(
+        "tree": {"type": "shapegroup", "ball": {"type": "sphere", "radius": 0.5, "bsdf": {"type": "ref", "id": "grey"}},
+                 "leaf": {"type": "mesh", "positions": [0,0,0, 1,0,0, 0,1,0], "triangles": [0,1,2], "bsdf": {"type": "diffuse", "reflectance": 0.25}}},
+        "grey": {"type": "diffuse", "reflectance": 0.3},
+        "one": {"type": "instance", "of": {"type": "ref", "id": "tree"}, "to_world": [{"type": "translate", "value": [1,2,3]}]},
+        "two": {"type": "instance", "of": {"type": "shapegroup", "box": {"type": "cube"}}, "to_world": [{"type": "scale", "value": [1,-2,1]}]}
+    )");
+    const Exported e(text);
+    CHECK(e.leftOut.empty());
+    CHECK(e.value("shape[@type='shapegroup' and @id='tree']/shape[@type='sphere']/float") == "0.5");
+    const std::string file = e.value("shape[@id='tree']/shape[@type='ply']/string[@name='filename']");
+    CHECK(readPly(readFile(e.folder / file), file).triangles.size() == 1);
+    e.find("shape[@id='tree']/shape[@type='ply']/bsdf");
+    CHECK(std::string(e.find("shape[@type='instance' and @id='one']/ref").attribute("id").value()) == "tree");
+    CHECK(e.value("shape[@id='one']/transform/matrix") == "1 0 0 1 0 1 0 2 0 0 1 3 0 0 0 1");
+    const std::string apart = e.find("shape[@id='two']/ref").attribute("id").value();
+    e.find(fmt::format("shape[@type='shapegroup' and @id='{}']/shape[@type='cube']", apart));
+
+    // Read and written again: the same, but that the copy of a file is named after its folder too.
+    const fs::path again = e.files.path / "again";
+    exportMitsuba3(SceneDescription::fromFile(e.folder / "scene.xml"), again);
+    CHECK(readFile(again / "meshes/meshes_leaf.ply") == readFile(e.folder / file));
+    std::string xml = readFile(again / "scene.xml");
+    const std::string line = "      <string name=\"filename\" value=\"meshes/meshes_leaf.ply\" />\n";
+    REQUIRE(xml.find(line) != std::string::npos);
+    xml.erase(xml.find(line), line.size());
+    std::string written = readFile(e.folder / "scene.xml");
+    const std::string original = "      <string name=\"filename\" value=\"meshes/leaf.ply\" />\n";
+    REQUIRE(written.find(original) != std::string::npos);
+    written.erase(written.find(original), original.size());
+    CHECK(xml == written);
+    const Scene first = describeText(text, e.files.path).build(), second = SceneDescription::fromFile(again / "scene.xml").build();
+    REQUIRE(second.shapes.size() == first.shapes.size());
+    for (size_t i = 0; i < first.shapes.size(); ++i) {
+        const auto* placed = std::get_if<MeshInstance>(&first.shapes[i].geometry);
+        if (!placed) continue;
+        CHECK(std::get<MeshInstance>(second.shapes[i].geometry).toWorld == placed->toWorld);
+        CHECK(std::get<MeshInstance>(second.shapes[i].geometry).mesh->positions == placed->mesh->positions);
+    }
 }

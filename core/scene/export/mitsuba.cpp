@@ -1,4 +1,4 @@
-#include "core/scene/export/mitsuba3.h"
+#include "core/scene/export/mitsuba.h"
 
 #include <algorithm>
 #include <array>
@@ -7,10 +7,11 @@
 #include <sstream>
 
 #include "core/scene/export/assets.h"
-#include "core/scene/export/nearest.h"
+#include "core/scene/export/mitsuba_dialect.h"
 #include "core/scene/loading/entries.h"
 #include "core/scene/loading/plugin_table.h"
 #include "core/scene/loading/sensors.h"
+#include "core/scene/loading/shapes.h"
 #include "core/scene/loading/transform.h"
 
 namespace ulam {
@@ -22,7 +23,7 @@ struct TaggedPlugin {
     std::vector<ParameterInfo> parameters;
 };
 
-std::map<std::string, TaggedPlugin> taggedPlugins() {
+std::map<std::string, TaggedPlugin> taggedPlugins(const MitsubaDialect& dialect) {
     std::map<std::string, TaggedPlugin> result;
     for (const auto& [kind, tag] : {std::pair{PluginKind::Shapes, "shape"},
                                     {PluginKind::Bsdfs, "bsdf"},
@@ -31,14 +32,15 @@ std::map<std::string, TaggedPlugin> taggedPlugins() {
                                     {PluginKind::Sensors, "sensor"},
                                     {PluginKind::Films, "film"},
                                     {PluginKind::Filters, "rfilter"}})
-        for (PluginInfo& plugin : scenePlugins(kind)) result[plugin.name] = {tag, std::move(plugin.parameters)};
+        for (PluginInfo& plugin : scenePlugins(kind)) {
+            plugin.parameters.insert(plugin.parameters.end(), dialect.parameters.begin(), dialect.parameters.end());
+            result[plugin.name] = {tag, std::move(plugin.parameters)};
+        }
     return result;
 }
 
 /// Parameters for which 0 stands here for what Mitsuba takes where they are not given.
 constexpr std::array kZeroIsDefault{"fov", "beam_width"};
-
-constexpr ExportFormat kFormat{"scene.xml", " Written by Ulam for Mitsuba 3 "};
 
 /// Shortest decimals that read back as the same numbers.
 std::string decimals(const std::vector<double>& numbers) {
@@ -62,12 +64,14 @@ pugi::xml_node appendProperty(pugi::xml_node parent, const char* tag, const std:
 
 class Exporter {
 public:
-    Exporter(const SceneDescription& description, const std::filesystem::path& folder)
-        : scene_(description.build()),
+    Exporter(const SceneDescription& description, const std::filesystem::path& folder, const MitsubaDialect& dialect)
+        : dialect_(dialect),
+          plugins_(taggedPlugins(dialect)),
+          scene_(description.build()),
           filmSize_(description.filmSize()),
-          folder_(folder, kFormat),
+          folder_(folder, dialect.format),
           assets_(folder_, description.folder()) {
-        dictionary_ = withClearSensors(JsonNode(description.dictionary()));
+        dictionary_ = groupsApart(withClearSensors(JsonNode(description.dictionary())));
     }
 
     std::vector<std::string> run();
@@ -79,10 +83,13 @@ private:
     void entry(const JsonNode& node);
     pugi::xml_node plugin(pugi::xml_node parent, const JsonNode& node);
     void property(pugi::xml_node parent, const ParameterInfo& parameter, const JsonNode& value);
-    void mesh(const JsonNode& node);
+    void scaled(pugi::xml_node parent, const JsonNode& node);
+    pugi::xml_node mesh(pugi::xml_node parent, const JsonNode& node);
+    JsonNode groupsApart(const JsonNode& dictionary) const;
     JsonNode withClearSensors(const JsonNode& dictionary) const;
 
-    const std::map<std::string, TaggedPlugin> plugins_ = taggedPlugins();
+    const MitsubaDialect& dialect_;
+    const std::map<std::string, TaggedPlugin> plugins_;
     JsonNode dictionary_{};
     Scene scene_;
     FilmSize filmSize_;
@@ -96,18 +103,20 @@ private:
 };
 
 void Exporter::property(pugi::xml_node parent, const ParameterInfo& parameter, const JsonNode& value) {
-    const std::string& name = parameter.name;
     if (value.isNull()) return;
-    if (value.json() == 0 && std::ranges::find(kZeroIsDefault, name) != kZeroIsDefault.end()) return;
+    if (value.json() == 0 && std::ranges::find(kZeroIsDefault, parameter.name) != kZeroIsDefault.end()) return;
+    const std::string name = dialect_.spelled(parameter.name);
     if (isPlugin(value) && pluginName(value) != "rgb") {
         plugin(parent, value).append_attribute("name") = name.c_str();
     } else if (parameter.type == "spectrum" || value.isObject()) {
         const Spectrum c = parseSpectrum(value);
         appendProperty(parent, "rgb", name, decimals({c.x, c.y, c.z}));
-    } else if (name.starts_with("to_")) {
+    } else if (parameter.name.starts_with("to_")) {
         pugi::xml_node transform = parent.append_child("transform");
         transform.append_attribute("name") = name.c_str();
         transform.append_child("matrix").append_attribute("value") = matrix(parseTransform(value)).c_str();
+    } else if (name == "weights") {
+        appendProperty(parent, "string", name, decimals(value.numbers()));
     } else if (value.isArray()) {
         const char* tag = parameter.type != "json" ? "rgb" : name.ends_with("direction") ? "vector" : "point";
         appendProperty(parent, tag, name, decimals(value.numbers(3)));
@@ -131,11 +140,12 @@ pugi::xml_node Exporter::plugin(pugi::xml_node parent, const JsonNode& node) {
         reference.append_attribute("id") = ids_.at(node.at("id").string()).c_str();
         return reference;
     }
-    if (const auto nearest = nearestInMitsuba3(node)) {
+    if (const auto nearest = dialect_.nearest(node)) {
         const JsonNode written(nearest->dictionary);
         if (!nearest->same) leaveOut(node, fmt::format("{}, written as {},", inQuotes(pluginName(node)), inQuotes(pluginName(written))));
         return plugin(parent, written);
     }
+    if (pluginName(node) == "mesh") return mesh(parent, node);
     if (const auto baked = assets_.bakedPicture(node)) {
         pugi::xml_node picture = plugin(parent, JsonNode(baked->plugin));
         appendProperty(picture, "string", "filename", baked->file);
@@ -144,12 +154,20 @@ pugi::xml_node Exporter::plugin(pugi::xml_node parent, const JsonNode& node) {
     const TaggedPlugin& known = plugins_.at(pluginName(node));
     pugi::xml_node xml = parent.append_child(known.tag);
     xml.append_attribute("type") = pluginName(node).c_str();
-    for (const auto& [key, member] : node.members()) {
+    std::vector<std::string> lost;
+    const JsonNode written(dialect_.reworded(node, lost));
+    for (const std::string& what : lost) leaveOut(node, what);
+    for (const auto& [key, rewritten] : written.members()) {
         if (key == "type" || key == "id") continue;
+        // What stayed as it was knows its place.
+        const auto original = node.find(key);
+        const JsonNode member = original && original->json() == rewritten.json() ? *original : rewritten;
         const auto parameter = std::find_if(known.parameters.begin(), known.parameters.end(),
                                             [&, &name = key](const ParameterInfo& p) { return p.name == name; });
         if (parameter != known.parameters.end())
             property(xml, *parameter, member);
+        else if (isPlugin(member) && pluginName(member) == "scale")
+            scaled(xml, member);
         else if (isPlugin(member) && (pluginName(member) == "ref" || plugins_.contains(pluginName(member))))
             plugin(xml, member);  // without a name: its kind says what it is for, its place which one it is
         else
@@ -158,20 +176,43 @@ pugi::xml_node Exporter::plugin(pugi::xml_node parent, const JsonNode& node) {
     return xml;
 }
 
+/// A factor around a texture, which only old versions have.
+void Exporter::scaled(pugi::xml_node parent, const JsonNode& node) {
+    pugi::xml_node xml = parent.append_child("texture");
+    xml.append_attribute("type") = "scale";
+    appendProperty(xml, "float", "scale", decimals({node.at("scale").number()}));
+    plugin(xml, node.at("texture"));
+}
+
 /// `mesh` is Ulam's own.
-void Exporter::mesh(const JsonNode& node) {
-    const auto shape =
-        std::find_if(scene_.shapes.begin(), scene_.shapes.end(), [&](const Shape& s) { return s.id == node.key(); });
-    const Mesh& loaded = std::get<Mesh>(shape->geometry);
-    const std::string& id = ids_.at(entryName(node));
-    const std::string file = assets_.mesh(loaded, id);
+pugi::xml_node Exporter::mesh(pugi::xml_node parent, const JsonNode& node) {
+    const Shape shape = readShape(node, assets_.files);
+    const Mesh& loaded = std::get<Mesh>(shape.geometry);
+    const std::string file = assets_.mesh(loaded, entryName(node));
     Json ply = node.json();
     for (const ParameterInfo& parameter : plugins_.at("mesh").parameters) ply.erase(parameter.name);
     ply["type"] = "ply";
-    pugi::xml_node xml = plugin(root_, JsonNode(ply));
-    xml.append_attribute("id") = id.c_str();
+    pugi::xml_node xml = plugin(parent, JsonNode(ply));
     appendProperty(xml, "string", "filename", file);
-    if (loaded.normals.empty()) appendProperty(xml, "boolean", "face_normals", "true");
+    if (loaded.normals.empty()) appendProperty(xml, "boolean", dialect_.spelled("face_normals"), "true");
+    return xml;
+}
+
+/// The dictionary with the groups that stand in instances as entries of their own: Mitsuba takes references only.
+JsonNode Exporter::groupsApart(const JsonNode& dictionary) const {
+    Json result = dictionary.json();
+    for (const JsonNode& node : entriesOf(dictionary)) {
+        if (pluginName(node) != "instance") continue;
+        for (const JsonNode& nested : nestedPlugins(node, plugins_.at("instance").parameters)) {
+            if (pluginName(nested) != "shapegroup") continue;
+            std::string name = fmt::format("{}_{}", node.key(), nested.key());
+            while (result.contains(name)) name += '_';
+            result[name] = nested.json();
+            result[name]["id"] = name;
+            result[node.key()][nested.key()] = {{"type", "ref"}, {"id", name}};
+        }
+    }
+    return JsonNode(std::move(result));
 }
 
 /// The dictionary with the defaults written out that Mitsuba does not share.
@@ -201,14 +242,19 @@ void Exporter::entry(const JsonNode& node) {
     const std::string& type = pluginName(node);
     const auto known = plugins_.find(type);
     if (noteIfUnused(node, assets_.files) || known == plugins_.end()) return leaveOut(node, inQuotes(type));
-    if (type == "mesh") return mesh(node);
     plugin(root_, node).append_attribute("id") = ids_.at(entryName(node)).c_str();
 }
 
 std::vector<std::string> Exporter::run() {
-    document_.append_child(pugi::node_comment).set_value(kFormat.mark);
+    document_.append_child(pugi::node_comment).set_value(dialect_.format.mark);
     root_ = document_.append_child("scene");
-    root_.append_attribute("version") = "3.0.0";
+    root_.append_attribute("version") = dialect_.version;
+    if (dialect_.choosesIntegrator) {
+        pugi::xml_node choice = root_.append_child("default");
+        choice.append_attribute("name") = "integrator";
+        choice.append_attribute("value") = "path";
+        root_.append_child("integrator").append_attribute("type") = "$integrator";
+    }
     const std::vector<JsonNode> entries = entriesOf(dictionary_);
     for (const JsonNode& node : entries) ids_[entryName(node)] = idNames_.make(entryName(node));
     for (const JsonNode& node : entries) entry(node);
@@ -222,7 +268,11 @@ std::vector<std::string> Exporter::run() {
 }  // namespace
 
 std::vector<std::string> exportMitsuba3(const SceneDescription& description, const std::filesystem::path& folder) {
-    return Exporter(description, folder).run();
+    return Exporter(description, folder, mitsuba3()).run();
+}
+
+std::vector<std::string> exportMitsuba06(const SceneDescription& description, const std::filesystem::path& folder) {
+    return Exporter(description, folder, mitsuba06()).run();
 }
 
 }  // namespace ulam

@@ -1,5 +1,5 @@
 #pragma once
-// Scenes for Mitsuba 3: its XML, with meshes as PLY files.
+// Scenes for Mitsuba: its XML, with meshes as PLY files.
 
 #include <filesystem>
 #include <string>
@@ -13,5 +13,7 @@ namespace ulam {
 /// (see ExportFolder). Files that the scene names are copied. Returns a line for everything that was left out
 /// or written as something else (nearest.h).
 std::vector<std::string> exportMitsuba3(const SceneDescription& description, const std::filesystem::path& folder);
+/// The same in the words of Mitsuba 0.6. `mitsuba -D integrator=mlt scene.xml` chooses the integrator; without it, path.
+std::vector<std::string> exportMitsuba06(const SceneDescription& description, const std::filesystem::path& folder);
 
 }  // namespace ulam
