@@ -196,7 +196,7 @@ void SceneBuilder::addInstance(const JsonNode& node) {
 void SceneBuilder::addEmitter(const JsonNode& node) {
     Emitter emitter = readEmitter(node, context_);
     if (isEnvironment(emitter) && std::any_of(scene_.emitters.begin(), scene_.emitters.end(), isEnvironment))
-        node.fail("a scene has at most one environment, constant or envmap");
+        node.fail("a scene has at most one environment: constant, envmap or sunsky");
     scene_.emitters.push_back(std::move(emitter));
 }
 

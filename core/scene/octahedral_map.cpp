@@ -63,7 +63,7 @@ Image octahedralFromMap(const EnvironmentMap& map, int size) {
             Spectrum sum(0.0);
             for (int sj = 0; sj < kSubsamples; ++sj)
                 for (int si = 0; si < kSubsamples; ++si)
-                    sum += map.radiance(Vec3f(octahedralDirection((i + (si + 0.5) / kSubsamples) / size,
+                    sum += map.pictureRadiance(Vec3f(octahedralDirection((i + (si + 0.5) / kSubsamples) / size,
                                                                   (j + (sj + 0.5) / kSubsamples) / size)));
             result.at(i, j) = Rgb(sum / (kSubsamples * kSubsamples));
         }

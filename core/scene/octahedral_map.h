@@ -14,7 +14,7 @@ Sample2 octahedralPoint(const Vec3d& direction);
 
 /// A picture of environment_map.h of about the same resolution. Texels are means over their cells.
 Image latLongFromOctahedral(const Image& square);
-/// The other way round, of a map whose axes are those of the world.
+/// The other way round, in the world's axes and without the sun.
 Image octahedralFromMap(const EnvironmentMap& map, int size);
 
 }  // namespace ulam

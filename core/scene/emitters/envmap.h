@@ -1,5 +1,6 @@
 #pragma once
-// envmap: radiance from all around, from a picture (Mitsuba 3 `envmap`); importance-sampled (environment_map.h).
+// envmap: radiance from all around, from a picture (Mitsuba 3 `envmap`), or from a clear sky with its sun (`sunsky`);
+// importance-sampled (environment_map.h).
 
 #include "core/scene/emitters/infinite.h"
 #include "core/scene/environment_map.h"
@@ -33,7 +34,7 @@ struct EnvmapEmitter {
     }
     double positionPdf(const EmissionContext&, const Vertex& x0) const { return map->pdf(x0.position); }
     void invertPosition(const EmissionContext&, const Vertex& x0, Block& u) const {
-        const Sample2 s = map->invert(x0.position);
+        const Sample2 s = map->invert(x0.position, u[1]);
         u[1] = s.u;
         u[2] = s.v;
     }

@@ -25,6 +25,11 @@ std::string colour(const char* name, const Spectrum& c) {
     return fmt::format(" \"rgb {}\" [ {} {} {} ]", name, c.x, c.y, c.z);
 }
 
+std::string distant(const Vec3f& from, const Spectrum& irradiance) {
+    return fmt::format("LightSource \"distant\" \"point3 from\" {} \"point3 to\" [ 0 0 0 ]{}\n", numbers(Vec3d(from)),
+                       colour("L", irradiance));
+}
+
 /// Axes and origin as a directive: the rows for row vectors.
 std::string transform(const Vec3d& x, const Vec3d& y, const Vec3d& z, const Vec3d& origin) {
     std::string text = "Transform [";
@@ -230,11 +235,19 @@ void Exporter::instance(const JsonNode& node) {
 }
 
 std::string Exporter::environment(const JsonNode& node, const EnvmapEmitter& emitter) {
-    const Image picture = assets_.files.readImage(node.at("filename"), false);
     // As many texels as the picture has around its equator.
-    const int size = std::clamp(picture.width == picture.height ? picture.width : picture.width * 5 / 8, 16, 8192);
-    return fmt::format("LightSource \"infinite\" \"string filename\" \"{}\"\n",
-                       assets_.image(octahedralFromMap(*emitter.map, size), "environment"));
+    int size = 512;
+    if (const auto filename = node.find("filename")) {
+        const Image picture = assets_.files.readImage(*filename, false);
+        size = std::clamp(picture.width == picture.height ? picture.width : picture.width * 5 / 8, 16, 8192);
+    }
+    std::string text = fmt::format("LightSource \"infinite\" \"string filename\" \"{}\"\n",
+                                   assets_.image(octahedralFromMap(*emitter.map, size), "environment"));
+    if (const auto& sun = emitter.map->sun()) {
+        leaveOut(node, "the disc of the sun, written as parallel light,");
+        text += distant(sun->direction(), sun->radiance() * sun->solidAngle());
+    }
+    return text;
 }
 
 void Exporter::light(const JsonNode& node) {
@@ -251,8 +264,7 @@ void Exporter::light(const JsonNode& node) {
             numbers(Vec3d(spot->position)), numbers(Vec3d(spot->position) + Vec3d(spot->frame.n)), cone, cone - beam,
             colour("I", spot->intensity));
     } else if (const auto* sun = std::get_if<DirectionalEmitter>(&emitter)) {
-        world_ += fmt::format("LightSource \"distant\" \"point3 from\" {} \"point3 to\" [ 0 0 0 ]{}\n",
-                              numbers(Vec3d(sun->position)), colour("L", sun->irradiance));
+        world_ += distant(sun->position, sun->irradiance);
     } else if (const auto* constant = std::get_if<ConstantEmitter>(&emitter)) {
         world_ += fmt::format("LightSource \"infinite\"{}\n", colour("L", constant->emitted));
     } else if (const auto* map = std::get_if<EnvmapEmitter>(&emitter)) {

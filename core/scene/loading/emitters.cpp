@@ -1,6 +1,7 @@
 #include "core/scene/loading/emitters.h"
 
 #include "core/scene/loading/plugin_table.h"
+#include "core/scene/loading/sunsky.h"
 #include "core/scene/loading/transform.h"
 #include "core/scene/octahedral_map.h"
 
@@ -123,6 +124,7 @@ const PluginTable<Emitter(const JsonNode&, LoadContext&)>& table() {
                        {{"envmap", "radiance from all around, from a picture", parameterInfo<EnvmapParameters>()}, readEnvmap},
                        {{"point", "the same intensity in all directions", parameterInfo<PointParameters>()}, readPoint},
                        {{"spot", "a point that shines into a cone", parameterInfo<SpotParameters>()}, readSpot},
+                       {{"sunsky", "a clear sky and the sun (Hosek and Wilkie)", sunskyParameters()}, readSunsky},
                    });
     return plugins;
 }

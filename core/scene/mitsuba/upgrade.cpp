@@ -82,6 +82,32 @@ void upgradeMixture(Json& bsdf) {
     if (const auto weights = parseNumbers(bsdf["weights"].get<std::string>())) bsdf["weights"] = *weights;
 }
 
+/// `sky` and `sun` are the parts of a `sunsky`, whose zenith was +y, south +z and east +x.
+void upgradeSky(Json& sky, const std::string& part) {
+    const Json scale = sky.contains("scale") ? sky["scale"] : Json(1);
+    sky.erase("scale");
+    sky.erase("resolution");
+    sky["type"] = "sunsky";
+    for (const char* name : {"sky", "sun"}) {
+        const std::string own = std::string(name) + "_scale";
+        if (part == name || (part == "sunsky" && !sky.contains(own) && scale != 1)) sky[own] = scale;
+        if (part != name && part != "sunsky") sky[own] = 0;
+    }
+    if (!sky.contains("albedo")) sky["albedo"] = 0.2;
+    // A radius of 0 was parallel light; there is nothing that the smallest disc lights differently.
+    if (sky.contains("sun_radius_scale") && sky["sun_radius_scale"].is_number())
+        sky["sun_aperture"] = std::max(0.01, 0.5358 * sky["sun_radius_scale"].get<double>());
+    sky.erase("sun_radius_scale");
+    // Without effect where they are at their defaults, else refused by name.
+    if (sky.contains("stretch") && sky["stretch"] == 1) sky.erase("stretch");
+    if (sky.contains("extend") && sky["extend"] == false) sky.erase("extend");
+    Json steps = Json::array();
+    steps.push_back({{"type", "matrix"}, {"value", {0, -1, 0, 0, 0, 0, 1, 0, 1, 0, 0, 0, 0, 0, 0, 1}}});
+    if (sky.contains("to_world"))
+        for (Json& step : sky["to_world"]) steps.push_back(std::move(step));
+    sky["to_world"] = std::move(steps);
+}
+
 }  // namespace
 
 std::string underscored(std::string_view camelCase) {
@@ -105,6 +131,7 @@ void upgradePlugin(Json& plugin, std::string_view tag, const MitsubaVersion& ver
     if (plugin["type"] == "bumpmap") upgradeBumpmap(plugin);
     if (type == "normalmap") upgradeNormalmap(plugin);
     if (type == "mixturebsdf") upgradeMixture(plugin);
+    if (tag == "emitter" && (type == "sky" || type == "sun" || type == "sunsky")) upgradeSky(plugin, type);
 }
 
 }  // namespace ulam

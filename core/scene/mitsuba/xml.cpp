@@ -213,7 +213,8 @@ void XmlReader::readElement(const XmlFile& file, const pugi::xml_node& node, Jso
         references_.push_back(parent.pointer + '/' + escapePointerStep(name));
     } else {
         const std::string name = place(file, node, object, parent, propertyName(file, node));
-        const PropertyContext context{file.version.camelCase(), parent.emits, name};
+        // The albedo in a sky is the ground's.
+        const PropertyContext context{file.version.camelCase(), parent.emits && name != "albedo", name};
         Json value;
         try {
             if (tag == "spectrum" && node.attribute("filename")) {
