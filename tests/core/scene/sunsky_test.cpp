@@ -2,7 +2,7 @@
 // sampling of sun and sky, reading and upgrading.
 
 #include "core/base/file.h"
-#include "core/scene/export/mitsuba3.h"
+#include "core/scene/export/mitsuba.h"
 #include "core/scene/mitsuba/upgrade.h"
 #include "core/scene/sky/clear_sky.h"
 #include "core/scene/sky/hosek_wilkie.h"
