@@ -175,7 +175,8 @@ TEST_CASE("the sun's disc: all samples are inside, uniform, and found again") {
                 const Sample2 again = disc.invert(w);
                 REQUIRE((again.u >= 0 && again.u < 1 && again.v >= 0 && again.v < 1));
                 REQUIRE(std::abs(again.u - u) < 2 * margin);
-                REQUIRE(length(disc.sample(again.u, again.v) - w) < 3e-7f);
+                const double atRim = u > 1 - 2 * margin ? radius * margin : 0;
+                REQUIRE(length(disc.sample(again.u, again.v) - w) < 3e-7 + atRim);
             }
             CHECK(disc.holds(axis));
             CHECK_FALSE(disc.holds(-axis));
