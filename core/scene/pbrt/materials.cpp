@@ -6,7 +6,9 @@
 #include <cmath>
 
 #include "core/config/suggest.h"
+#include "core/scene/bsdfs/metals.h"
 #include "core/scene/loading/plugin_table.h"
+#include "core/scene/loading/transform.h"
 
 namespace ulam::pbrt {
 namespace {
@@ -181,6 +183,18 @@ void Materials::setRoughness(Json& bsdf, const Roughness& roughness) {
     }
 }
 
+/// The one roughness that coats have here.
+double Materials::coatAlpha(const Parameters& p, const Roughness& rough, std::string& difference) {
+    if (!rough.u.isConstant() || !rough.v.isConstant()) {
+        dictionary_.unsupported(fmt::format("a texture for a roughness of {}", p.owner()), p.place(), {},
+                                "a roughness of 0.5 takes its place");
+        return std::sqrt(0.5);
+    }
+    const double u = rough.u.first.x, v = rough.v.first.x;
+    if (u != v) difference += ", its roughness is the same in all directions";
+    return std::clamp(std::sqrt(u * v), 1e-4, 1.0);
+}
+
 Json Materials::coatedDiffuse(const Parameters& p) {
     const Roughness rough = roughness(p, "");
     Json bsdf = {{"type", rough.isSmooth ? "plastic" : "roughplastic"},
@@ -195,15 +209,7 @@ Json Materials::coatedDiffuse(const Parameters& p) {
     textures_.number(p, "g", 0);
     p.ignore({"maxdepth", "nsamples", "twosided"});
     if (!rough.isSmooth) {
-        if (!rough.u.isConstant() || !rough.v.isConstant()) {
-            dictionary_.unsupported(fmt::format("a texture for a roughness of {}", p.owner()), p.place(), {},
-                                    "a roughness of 0.5 takes its place");
-            bsdf["alpha"] = std::sqrt(0.5);
-        } else {
-            const double u = rough.u.first.x, v = rough.v.first.x;
-            if (u != v) difference += ", its roughness is the same in all directions";
-            bsdf["alpha"] = std::clamp(std::sqrt(u * v), 1e-4, 1.0);
-        }
+        bsdf["alpha"] = coatAlpha(p, rough, difference);
         bsdf["distribution"] = "ggx";
     }
     nearest(p, bsdf["type"], difference);
@@ -245,11 +251,28 @@ Json Materials::conductor(const Parameters& p) {
 }
 
 Json Materials::coatedConductor(const Parameters& p) {
-    p.ignore({"maxdepth", "nsamples", "twosided", "thickness", "albedo", "g", "interface.roughness",
-              "interface.uroughness", "interface.vroughness", "interface.eta"});
+    p.ignore({"maxdepth", "nsamples", "twosided", "thickness", "albedo", "g"});
+    const Roughness rough = roughness(p, "interface.");
+    const double eta = index(p, "interface.eta", 1.5, dictionary_);
     Json bsdf = metalBsdf(p, "conductor.");
-    nearest(p, bsdf["type"], "the metal without its coat");
-    return twosided(std::move(bsdf));
+    // The metal's constants are against vacuum, and what it meets is the coat.
+    if (const std::string name = bsdf.value("material", ""); !name.empty() && name != "none") {
+        const Metal& metal = *findMetal(name);
+        bsdf.erase("material");
+        bsdf["eta"] = colourJson(metal.eta);
+        bsdf["k"] = colourJson(metal.k);
+    }
+    for (const char* constant : {"eta", "k"})
+        if (bsdf.contains(constant)) bsdf[constant] = colourJson(parseSpectrum(JsonNode(bsdf[constant])) / eta);
+    std::string difference = "light that the coat throws back inside is lost, and it absorbs nothing";
+    Json coat = {{"type", rough.isSmooth ? "coating" : "roughcoating"}, {"int_ior", eta}, {"ext_ior", 1}};
+    if (!rough.isSmooth) {
+        coat["alpha"] = coatAlpha(p, rough, difference);
+        coat["distribution"] = "ggx";
+    }
+    coat["bsdf"] = std::move(bsdf);
+    nearest(p, coat["type"], difference);
+    return twosided(std::move(coat));
 }
 
 Json Materials::dielectric(const Parameters& p) {

@@ -59,6 +59,7 @@ private:
     Json value(const Texture& texture);
     Roughness roughness(const Parameters& p, const std::string& prefix);
     void setRoughness(Json& bsdf, const Roughness& roughness);
+    double coatAlpha(const Parameters& p, const Roughness& rough, std::string& difference);
     void nearest(const Parameters& p, const std::string& bsdf, const std::string& difference);
 
     Dictionary& dictionary_;

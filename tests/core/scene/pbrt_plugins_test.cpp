@@ -6,6 +6,7 @@
 #include "core/scene/loading/plugin_table.h"
 #include "core/scene/octahedral_map.h"
 #include "core/scene/pbrt/subdivision.h"
+#include "core/scene/bsdfs/metals.h"
 #include "tests/core/scene/pbrt_scene.h"
 
 using namespace ulam;
@@ -62,9 +63,14 @@ TEST_CASE("pbrt: materials become BSDFs") {
     CHECK(bsdf(pbrt, "\"coateddiffuse\"")["type"] == "plastic");
     const auto metal = pbrt.read(
         R"(Material "coatedconductor" "float interface.roughness" 0 "float conductor.roughness" 0.01 Shape "sphere")");
-    CHECK(entry(metal, "material")["bsdf"] ==
-          Json::parse(R"({"type": "roughconductor", "distribution": "ggx", "alpha": 0.1, "material": "Cu"})"));
-    CHECK(mentions(substitutions(metal), "the metal without its coat"));
+    const Json coat = entry(metal, "material")["bsdf"];
+    CHECK(coat["type"] == "coating");
+    CHECK(coat["int_ior"] == 1.5);
+    CHECK(coat["bsdf"]["alpha"] == 0.1);
+    CHECK(coat["bsdf"]["eta"][1].get<double>() == Approx(findMetal("Cu")->eta.y / 1.5));
+    CHECK(coat["bsdf"]["k"][2].get<double>() == Approx(findMetal("Cu")->k.z / 1.5));
+    CHECK(mentions(substitutions(metal), "is written as the nearest"));
+    CHECK(entry(pbrt.read(R"(Material "coatedconductor" "float interface.roughness" 0.04 Shape "sphere")"), "material")["bsdf"]["alpha"] == 0.2);
     // Materials that are only named are checked too, and may be named before they are made.
     CHECK(pbrt.complaint(R"(MakeNamedMaterial "m" "string type" "diffuse" "float roughnes" 1)").has("roughnes"));
     CHECK(entry(pbrt.read(R"(NamedMaterial "m" Shape "sphere" MakeNamedMaterial "m" "string type" "dielectric")"),
