@@ -254,6 +254,7 @@ const std::vector<NamedScene>& pathScenes() {
         {"rough", roughThings(), true, false},      {"thin_lens", thinLens(), true, false},     {"sun_and_sky", sunAndSky(), true, true},
         {"layers", layers(), true, false},
         {"instances", instances(), true, false},
+        {"clear_sky", clearSky(), false, true},
     };
     return scenes;
 }
