@@ -127,8 +127,7 @@ TEST_CASE("the sun's disc: all samples are inside, uniform, and found again") {
             const SunDisc disc(axis, radius, Spectrum(1));
             CHECK(disc.solidAngle() == Approx(2 * kPi * (1 - std::cos(radius))).epsilon(1e-5));
             Random random(makeKey(60), 0, 0);
-            // What the rim's rounding may move is no more than a float's step over the radius.
-            const double margin = 1e-4 + 3e-7 / radius;
+            const double margin = 3e-7 / radius;  // some steps of a float, over the radius
             for (int i = 0; i < 50'000; ++i) {
                 const double u = i % 2 ? random() : 1 - 1e-9 * random(), v = random();
                 const Vec3f w = disc.sample(u, v);
@@ -136,7 +135,7 @@ TEST_CASE("the sun's disc: all samples are inside, uniform, and found again") {
                 const Sample2 again = disc.invert(w);
                 REQUIRE((again.u >= 0 && again.u < 1 && again.v >= 0 && again.v < 1));
                 REQUIRE(std::abs(again.u - u) < 2 * margin);
-                REQUIRE(length(disc.sample(again.u, again.v) - w) < 3e-7f);
+                REQUIRE(length(disc.sample(again.u, again.v) - w) < 5e-7f);
             }
             CHECK(disc.holds(axis));
             CHECK_FALSE(disc.holds(-axis));
