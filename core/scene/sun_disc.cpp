@@ -15,8 +15,8 @@ SunDisc::SunDisc(const Vec3f& direction, double radius, const Spectrum& radiance
 
 Vec3f SunDisc::sample(double u, double v) const {
     const Vec3d across = s_ * std::cos(2 * kPi * v) + t_ * std::sin(2 * kPi * v);
-    // Where rounding to float moves a direction over the rim it is drawn a little further inside: no light is lost.
-    for (double height = u * height_;; height *= 0.9999) {
+    // Where rounding to float moves a direction over the rim it is drawn 10⁻⁷ further inside: no light is lost.
+    for (double height = u * height_;; height *= 1 - 2e-7 / radius_) {
         const Vec3f w(axis_ * (1 - height) + across * std::sqrt(height * (2 - height)));
         if (holds(w)) return w;
     }

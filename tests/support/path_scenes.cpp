@@ -217,6 +217,15 @@ Json instances() {
     return scene;
 }
 
+/// A sky above its horizon and a sun, wide enough for walks to find it.
+Json clearSky() {
+    Json scene = floorAndBack();
+    scene["sky"] = {{"type", "sunsky"}, {"sun_direction", {0.5, 0.6, 0.4}}, {"sun_aperture", 20}, {"to_world", {{{"type", "rotate"}, {"axis", {1, 0, 0}}, {"angle", -90}}}}};
+    scene["ball"] = ball({-0.5, 0.4, 0}, 0.4, diffuse(0.7));
+    scene["metal"] = ball({0.4, 0.4, 0.3}, 0.4, {{"type", "roughconductor"}, {"alpha", 0.3}});
+    return scene;
+}
+
 /// Holds sky.exr, a small picture, and normals.exr, which holds normals.
 const std::filesystem::path& sceneFolder() {
     static const struct Folder {
@@ -258,6 +267,7 @@ const std::vector<NamedScene>& pathScenes() {
         {"rough", roughThings(), true, false},      {"thin_lens", thinLens(), true, false},     {"sun_and_sky", sunAndSky(), true, true},
         {"layers", layers(), true, false},
         {"instances", instances(), true, false},
+        {"clear_sky", clearSky(), false, true},
     };
     return scenes;
 }

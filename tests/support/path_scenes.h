@@ -23,7 +23,7 @@ Scene buildScene(const Json& dictionary, const Json& film = {{"width", 32}, {"he
 /// point_light; environment: objects under a constant sky; many_lights: a rectangle, a ball, a mesh, a point and the
 /// sky at once; shading_normals: a curved surface made of few triangles; rough: microfacets, coats and a pane; thin_lens: depth of field, a spot, a cut-out
 /// sheet; sun_and_sky: a picture of the sky, parallel light, textures, a disc and a cylinder; layers: mixtures, masks, bumps;
-/// instances: shape groups placed by any affine maps.
+/// instances: shape groups placed by any affine maps; clear_sky: a sky above its horizon, with a wide sun.
 const std::vector<NamedScene>& pathScenes();
 /// By name.
 const NamedScene& pathScene(const std::string& name);

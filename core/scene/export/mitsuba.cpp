@@ -118,7 +118,7 @@ void Exporter::property(pugi::xml_node parent, const ParameterInfo& parameter, c
     } else if (name == "weights") {
         appendProperty(parent, "string", name, decimals(value.numbers()));
     } else if (value.isArray()) {
-        const char* tag = parameter.type != "json" ? "rgb" : name.ends_with("direction") ? "vector" : "point";
+        const char* tag = parameter.type != "json" ? "rgb" : parameter.name.ends_with("direction") ? "vector" : "point";
         appendProperty(parent, tag, name, decimals(value.numbers(3)));
     } else if (name == "filename") {
         appendProperty(parent, "string", name,

@@ -75,6 +75,21 @@ void oldBumpmap(Json& bsdf, std::vector<std::string>& lost) {
     lost.emplace_back("the scale of heights that are a reference");
 }
 
+/// The zenith was +y, south +z and east +x; the sun is another model's.
+void oldSky(Json& sky, std::vector<std::string>& lost) {
+    if (sky.value("sun_scale", 1.0) > 0) lost.emplace_back("the radiance of the sun, which is another there,");
+    if (!sky.contains("albedo")) sky["albedo"] = 0.3;
+    if (sky.contains("sun_aperture")) sky["sun_radius_scale"] = sky["sun_aperture"].get<double>() / 0.5358;
+    for (const char* name : {"sun_aperture", "complex_sun"}) sky.erase(name);
+    // Rows of what points are multiplied with from the left.
+    const Matrix4 turn(0, -1, 0, 0, 0, 0, 1, 0, 1, 0, 0, 0, 0, 0, 0, 1);
+    const Matrix4 m = turn * parseTransform(sky.contains("to_world") ? JsonNode(sky["to_world"]) : JsonNode());
+    Json rows = Json::array();
+    for (int row = 0; row < 4; ++row)
+        for (int column = 0; column < 4; ++column) rows.push_back(m[column][row]);
+    sky["to_world"] = rows;
+}
+
 Json inOldWords(const JsonNode& plugin, std::vector<std::string>& lost) {
     Json result = plugin.json();
     const std::string& type = pluginName(plugin);
@@ -83,6 +98,7 @@ Json inOldWords(const JsonNode& plugin, std::vector<std::string>& lost) {
     if (type == "conductor" || type == "roughconductor") oldMetal(result);
     if (type == "hdrfilm") result["banner"] = false;
     if (type == "bumpmap") oldBumpmap(result, lost);
+    if (type == "sunsky") oldSky(result, lost);
     return result;
 }
 
@@ -108,7 +124,8 @@ const MitsubaDialect& mitsuba06() {
         camelCase,
         inOldWords,
         {parameter("uscale", "number"), parameter("vscale", "number"), parameter("uoffset", "number"), parameter("voffset", "number"),
-         parameter("gamma", "number"), parameter("ext_eta", "number"), parameter("banner", "boolean")},
+         parameter("gamma", "number"), parameter("ext_eta", "number"), parameter("banner", "boolean"),
+         parameter("sun_radius_scale", "number")},
         true};
     return dialect;
 }

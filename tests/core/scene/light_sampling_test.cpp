@@ -143,7 +143,7 @@ TEST_CASE("the sky: directions are uniform, rays uniform over the scene's disc")
 }
 
 TEST_CASE("next-event samples follow their density, emitters are chosen by their probabilities") {
-    const Lights lights(GENERATE("many_lights", "thin_lens", "sun_and_sky"));
+    const Lights lights(GENERATE("many_lights", "thin_lens", "sun_and_sky", "clear_sky"));
     const Scene& scene = lights.scene;
     Vertex from{};
     from.kind = Vertex::Kind::Surface;
@@ -167,7 +167,7 @@ TEST_CASE("next-event samples follow their density, emitters are chosen by their
 }
 
 TEST_CASE("emitters: the numbers of a position or direction give it again") {
-    const Lights lights(GENERATE("many_lights", "thin_lens", "sun_and_sky"));
+    const Lights lights(GENERATE("many_lights", "thin_lens", "sun_and_sky", "clear_sky"));
     const Scene& scene = lights.scene;
     Random random(makeKey(31), 0, 0);
     Vertex from{};
