@@ -29,7 +29,7 @@ const std::vector<Chapter>& chapters() {
           "principledthin", "retarder"}},
         {"Emitters",
          PluginKind::Emitters,
-         {"collimated", "directionalarea", "projector", "sky", "sun", "sunsky", "timed_sunsky"}},
+         {"collimated", "directionalarea", "projector", "timed_sunsky"}},
         {"Textures",
          PluginKind::Textures,
          {"curvature", "gridtexture", "mesh_attribute", "scale", "vertexcolors", "volume", "wireframe"}},
