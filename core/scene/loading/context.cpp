@@ -1,11 +1,10 @@
 #include "core/scene/loading/context.h"
 
-#include <algorithm>
-
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/sha256.h"
 #include "core/image/image_io.h"
+#include "core/scene/loading/scene_file.h"
 
 namespace ulam {
 namespace {
@@ -13,21 +12,6 @@ namespace {
 constexpr std::size_t kLargestFile = std::size_t(4) << 30;
 
 }  // namespace
-
-SceneFile findSceneFile(const std::filesystem::path& folder, const std::string& name) {
-    namespace fs = std::filesystem;
-    const fs::path path = name, file = folder / path;
-    if (path.empty()) return {file, "the name of the file is empty", ""};
-    if (path.is_absolute() || std::find(path.begin(), path.end(), "..") != path.end())
-        return {file, "the path leaves the folder of the scene", "give a path below that folder"};
-    std::error_code failed;
-    // Links may lead out of the folder too, and pipes and devices need not end.
-    const fs::path inside = fs::relative(fs::weakly_canonical(file, failed), fs::weakly_canonical(folder / ".", failed), failed);
-    if (failed || (!inside.empty() && *inside.begin() == ".."))
-        return {file, "the path leaves the folder of the scene by a link", "give a file below that folder"};
-    if (fs::exists(file, failed) && !fs::is_regular_file(file, failed)) return {file, fmt::format("{} is no regular file", file.string()), ""};
-    return {file, "", ""};
-}
 
 std::filesystem::path LoadContext::locate(const JsonNode& filename) const {
     const SceneFile file = findSceneFile(folder, filename.string());

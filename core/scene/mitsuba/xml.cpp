@@ -4,7 +4,7 @@
 #include "core/base/file.h"
 #include "core/config/json_text.h"
 #include "core/config/suggest.h"
-#include "core/scene/loading/context.h"
+#include "core/scene/loading/scene_file.h"
 #include "core/scene/loading/plugin_table.h"
 #include "core/scene/mitsuba/properties.h"
 #include "core/scene/mitsuba/upgrade.h"

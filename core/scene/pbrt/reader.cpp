@@ -6,7 +6,7 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/config/suggest.h"
-#include "core/scene/loading/context.h"
+#include "core/scene/loading/scene_file.h"
 #include "core/scene/pbrt/camera.h"
 #include "core/scene/pbrt/instances.h"
 #include "core/scene/pbrt/lights.h"

@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "core/config/suggest.h"
-#include "core/scene/loading/context.h"
+#include "core/scene/loading/scene_file.h"
 #include "core/scene/loading/transform.h"
 #include "core/scene/pbrt/subdivision.h"
 

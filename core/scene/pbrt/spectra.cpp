@@ -7,7 +7,7 @@
 #include "core/base/file.h"
 #include "core/config/suggest.h"
 #include "core/scene/bsdfs/metals.h"
-#include "core/scene/loading/context.h"
+#include "core/scene/loading/scene_file.h"
 #include "core/scene/loading/spectra.h"
 #include "core/scene/mitsuba/values.h"
 
