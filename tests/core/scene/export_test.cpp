@@ -283,12 +283,10 @@ TEST_CASE("export: read back, a scene gives the same image to the last bit") {
             CAPTURE(leftOut);
             const Image again = imageOf(SceneDescription::fromFile(files.path / "out" / "scene.xml"));
             fs::remove_all(files.path / "out");
-            // Mitsuba 3 has no coats.
-            if (!leftOut.empty()) {
-                CHECK(named.name == "layers");
-                CHECK(version == "3");
-                continue;
-            }
+            // Mitsuba 3 has no coats, and the sun of 0.6 is another than this one, into which it is read back.
+            const bool coats = named.name == "layers" && version == "3", sun = named.name == "clear_sky" && version == "0.6";
+            CHECK(leftOut.empty() == !(coats || sun));
+            if (coats) continue;
             REQUIRE(again.pixels.size() == original.pixels.size());
             CHECK(std::memcmp(again.pixels.data(), original.pixels.data(), again.pixels.size() * sizeof(Rgb)) == 0);
         }
