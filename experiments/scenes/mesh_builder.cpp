@@ -29,10 +29,12 @@ void MeshBuilder::strip(const std::vector<Vec3d>& a, const std::vector<Vec3d>& b
 }
 
 void MeshBuilder::box(const Vec3d& corner, const Vec3d& a, const Vec3d& b, const Vec3d& c) {
-    const Vec3d opposite = corner + a + b + c;
-    for (const auto& [u, v] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)}) {
-        quad(corner, corner + v, corner + u + v, corner + u);
-        quad(opposite, opposite - u, opposite - u - v, opposite - v);
+    // Each corner is computed once: sums in another order would round to other points, and faces would not share them.
+    std::array<Vec3d, 8> corners;
+    for (size_t i = 0; i < 8; ++i) corners[i] = corner + a * double(i & 1) + b * double(i >> 1 & 1) + c * double(i >> 2);
+    for (const auto& [u, v] : {std::pair<size_t, size_t>(1, 2), std::pair<size_t, size_t>(2, 4), std::pair<size_t, size_t>(4, 1)}) {
+        quad(corners[0], corners[v], corners[u | v], corners[u]);
+        quad(corners[7], corners[7 ^ u], corners[7 ^ u ^ v], corners[7 ^ v]);
     }
 }
 
