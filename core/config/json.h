@@ -133,6 +133,9 @@ Json overrideValue(std::string_view text);
 std::pair<std::string, std::string> splitAssignment(std::string_view assignment);
 void applyOverrides(Json& root, const std::vector<std::string>& assignments);
 
+/// Whether a text can be a string of JSON.
+bool isUtf8(std::string_view text);
+
 /// Indented by two spaces. Fails with CannotWrite, naming the pointer, at a number that is not finite (JSON has none),
 /// and at a string that is not UTF-8.
 std::string dump(const Json& value);

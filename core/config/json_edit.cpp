@@ -97,6 +97,16 @@ void applyOverrides(Json& root, const std::vector<std::string>& assignments) {
     }
 }
 
+bool isUtf8(std::string_view text) {
+    if (std::none_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) >= 0x80; })) return true;
+    try {
+        Json(text).dump();  // refuses any other
+        return true;
+    } catch (const Json::type_error&) {
+        return false;
+    }
+}
+
 std::string dump(const Json& value) {
     refuseNonFinite(value, "");
     try {

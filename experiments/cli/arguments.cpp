@@ -12,6 +12,7 @@
 #include "core/base/error.h"
 #include "core/config/suggest.h"
 #include "core/render/sampler.h"
+#include "core/scene/loading/scene_file.h"
 
 namespace ulam {
 namespace {
@@ -68,6 +69,19 @@ std::shared_ptr<SceneFileOptions> addSceneFileOptions(CLI::App& command) {
         ->allow_extra_args(false);
     command.add_flag("--lenient", options->lenient, "replace unknown plugins in Mitsuba's XML or a .pbrt file: magenta BSDFs and textures, others left out; results say so");
     return options;
+}
+
+void addResourceOption(CLI::App& command) {
+    command
+        .add_option_function<std::vector<std::string>>(
+            "--resource-path",
+            [](const std::vector<std::string>& folders) {
+                for (const std::string& folder : folders) allowFilesFrom(folder);
+            },
+            "folder in which files that a scene names may also lie (repeatable)")
+        ->type_name("DIR")
+        ->take_all()
+        ->allow_extra_args(false);
 }
 
 ArgumentDocument samplerArgument(const std::string& argument) {

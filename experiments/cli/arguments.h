@@ -21,6 +21,8 @@ struct ArgumentDocument {
 ArgumentDocument sceneArgument(const std::string& argument, const SceneFileOptions& options = {});
 /// `-D NAME=VALUE`, repeatable, and `--lenient`.
 std::shared_ptr<SceneFileOptions> addSceneFileOptions(CLI::App& command);
+/// `--resource-path DIR`, repeatable: see allowFilesFrom, which is called while the command line is parsed.
+void addResourceOption(CLI::App& command);
 /// A sampler's name, a JSON file with its parameters, or JSON itself.
 ArgumentDocument samplerArgument(const std::string& argument);
 

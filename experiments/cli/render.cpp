@@ -127,6 +127,7 @@ void addRenderCommand(CLI::App& app) {
     CLI::App& command = *app.add_subcommand("render", "render one image");
     command.add_option("scene", a->scene, "JSON, XML or pbrt file, generator (see: ulam list generators), or JSON")->required();
     a->xml = addSceneFileOptions(command);
+    addResourceOption(command);
     command.add_option("--sampler", a->sampler, "name (see: ulam list samplers), JSON file, or JSON")->required();
     command
         .add_option("--set", a->assignments, "sampler.KEY=VALUE, scene.KEY=VALUE or scene.film.KEY=VALUE (repeatable)")

@@ -148,6 +148,7 @@ void addRunCommand(CLI::App& app) {
     command.add_flag("--quiet", a->quiet, "no progress");
     command.add_flag("--json", a->json, "print summary.json (with --dry-run: the plan)");
     addPluginOption(command);
+    addResourceOption(command);
     command.callback([a] { runExperiment(*a); });
 }
 

@@ -98,6 +98,7 @@ void addSceneCommand(CLI::App& app) {
     CLI::App& command = *app.add_subcommand("scene", "what is in a scene; write it for another renderer");
     command.add_option("scene", a->scene, "JSON, XML or pbrt file, generator (see: ulam list generators), or JSON")->required();
     a->xml = addSceneFileOptions(command);
+    addResourceOption(command);
     command.add_option("--set", a->assignments, "KEY=VALUE in the scene's dictionary (repeatable)")
         ->type_name("PATH=VALUE")
         ->take_all()

@@ -201,6 +201,22 @@ class Describe(CliTest):
         self.assertEqual((info["width"], info["emitters"], len(info["hash"])), (16, 1, 64))
         self.assertIn("16 x 16", self.ulam("scene", "scene.json", "--info").stdout)
 
+    def test_files_may_lie_in_the_folders_of_resource_path(self):
+        for name in ("scenes", "meshes"):
+            (self.folder / name).mkdir()
+        (self.folder / "meshes/m.obj").write_text("v 0 0 1\nv 1 0 1\nv 0 1 1\nf 1 2 3\n")
+        absolute = str(self.folder / "meshes/m.obj")
+        for name, filename in (("relative", "m.obj"), ("absolute", absolute), ("up", "../meshes/m.obj")):
+            self.write(f"scenes/{name}.json", dict(SCENE, mesh={"type": "obj", "filename": filename}))
+            refused = self.ulam("scene", f"scenes/{name}.json", "--info", expect=5 if name == "relative" else 4).stderr
+            self.assertEqual("--resource-path" in refused, name != "relative")
+            allowed = ("--resource-path", "scenes", "--resource-path", "meshes")
+            self.ulam("scene", f"scenes/{name}.json", "--info", *allowed)
+            self.ulam("render", f"scenes/{name}.json", "--sampler", "path", "--spp", 1, "-o", "x.exr", *allowed)
+            self.write("scenes/experiment.json", dict(EXPERIMENT, scenes={"wall": f"{name}.json"}))
+            self.ulam("run", "scenes/experiment.json", "--dry-run", *allowed)
+        self.ulam("scene", "scene.json", "--info", "--resource-path", "none", expect=5)
+
     def test_a_scene_is_exported(self):
         self.write("scene.json", dict(SCENE, integrator={"type": "path"}))
         for _ in range(2):

@@ -186,7 +186,7 @@ std::optional<Json> plainSpectrum(const Json& plugin, bool emits) {
     }
     if (type != "regular" && type != "irregular") return {};
     const auto list = [&](const char* name) {
-        const auto numbers = parseNumbers(plugin.value(name, ""));
+        const auto numbers = plugin.contains(name) && plugin[name].is_string() ? parseNumbers(plugin[name].get<std::string>()) : std::nullopt;
         if (!numbers || numbers->size() < 2) throw PropertyError{fmt::format("{} needs two or more {}", type, name), {}};
         return *numbers;
     };

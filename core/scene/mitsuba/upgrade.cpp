@@ -19,10 +19,21 @@ void rename(Json& plugin, const char* from, const char* to) {
     plugin.erase(from);
 }
 
+/// A parameter of another type than it should have is left for the loader to refuse.
+double numberOf(const Json& plugin, const char* name, double otherwise) {
+    const auto value = plugin.find(name);
+    return value != plugin.end() && value->is_number() ? value->get<double>() : otherwise;
+}
+
+std::string textOf(const Json& plugin, const char* name) {
+    const auto value = plugin.find(name);
+    return value != plugin.end() && value->is_string() ? value->get<std::string>() : "";
+}
+
 /// Texture coordinates were scaled, then moved.
 void upgradeTexture(Json& texture) {
     const auto take = [&](const char* name, double otherwise) {
-        const double value = texture.contains(name) && texture[name].is_number() ? texture[name].get<double>() : otherwise;
+        const double value = numberOf(texture, name, otherwise);
         texture.erase(name);
         return value;
     };
@@ -34,15 +45,15 @@ void upgradeTexture(Json& texture) {
 void upgradeBitmap(Json& bitmap) {
     for (const char* name : {"cache", "max_anisotropy"}) bitmap.erase(name);
     for (const char* smooth : {"ewa", "trilinear"})
-        if (bitmap.value("filter_type", "") == smooth) bitmap["filter_type"] = "bilinear";
+        if (textOf(bitmap, "filter_type") == smooth) bitmap["filter_type"] = "bilinear";
     // A gamma of 1 takes the numbers as they are; a negative one, the default, what the format says.
     if (bitmap.contains("gamma") && bitmap["gamma"].is_number()) {
         const double gamma = bitmap["gamma"].get<double>();
         if (gamma == 1) bitmap["raw"] = true;
         if (gamma == 1 || gamma <= 0) bitmap.erase("gamma");
     }
-    if (bitmap.contains("wrap_mode_u") && bitmap.value("wrap_mode_u", "") == bitmap.value("wrap_mode_v", "")) {
-        bitmap["wrap_mode"] = bitmap["wrap_mode_u"];
+    if (const std::string mode = textOf(bitmap, "wrap_mode_u"); !mode.empty() && mode == textOf(bitmap, "wrap_mode_v")) {
+        bitmap["wrap_mode"] = mode;
         bitmap.erase("wrap_mode_u");
         bitmap.erase("wrap_mode_v");
     }
@@ -53,27 +64,27 @@ void upgradeConductor(Json& bsdf) {
     if (bsdf.contains("ext_eta") && (bsdf["ext_eta"] == "air" || bsdf["ext_eta"] == 1)) bsdf.erase("ext_eta");
 }
 
-/// The texture that a relief holds, under any name.
-std::optional<std::string> textureIn(const Json& bsdf) {
+/// The texture that a relief, or a texture around another, holds under any name; `other` is a type that is one too.
+std::optional<std::string> textureIn(const Json& plugin, const char* other) {
     const auto textures = scenePlugins(PluginKind::Textures);
-    for (const auto& [name, value] : bsdf.items())
-        if (value.is_object() && value.contains("type") && (contains(textures, value["type"]) || value["type"] == "scale")) return name;
+    for (const auto& [name, value] : plugin.items())
+        if (const std::string type = value.is_object() ? textOf(value, "type") : ""; contains(textures, type) || type == other) return name;
     return std::nullopt;
 }
 
 /// Heights were scaled by a texture of their own.
 void upgradeBumpmap(Json& bsdf) {
-    const auto name = textureIn(bsdf);
+    const auto name = textureIn(bsdf, "scale");
     if (!name || bsdf[*name]["type"] != "scale") return;
     Json scale = bsdf[*name];
-    const auto nested = textureIn(scale);
+    const auto nested = textureIn(scale, "ref");
     if (!nested) return;
-    bsdf["scale"] = bsdf.value("scale", 1.0) * (scale.contains("scale") && scale["scale"].is_number() ? scale["scale"].get<double>() : 1.0);
+    if (!bsdf.contains("scale") || bsdf["scale"].is_number()) bsdf["scale"] = numberOf(bsdf, "scale", 1) * numberOf(scale, "scale", 1);
     bsdf[*name] = scale[*nested];
 }
 
 void upgradeNormalmap(Json& bsdf) {
-    if (const auto name = textureIn(bsdf)) rename(bsdf, name->c_str(), "normalmap");
+    if (const auto name = textureIn(bsdf, "scale")) rename(bsdf, name->c_str(), "normalmap");
 }
 
 /// "0.3, 0.7"
@@ -96,7 +107,7 @@ void upgradeSky(Json& sky, const std::string& part) {
     if (!sky.contains("albedo")) sky["albedo"] = 0.2;
     // A radius of 0 was parallel light; there is nothing that the smallest disc lights differently.
     if (sky.contains("sun_radius_scale") && sky["sun_radius_scale"].is_number())
-        sky["sun_aperture"] = std::max(0.01, 0.5358 * sky["sun_radius_scale"].get<double>());
+        sky["sun_aperture"] = std::max(0.01, 0.5358 * numberOf(sky, "sun_radius_scale", 1));
     sky.erase("sun_radius_scale");
     // Without effect where they are at their defaults, else refused by name.
     if (sky.contains("stretch") && sky["stretch"] == 1) sky.erase("stretch");
@@ -122,7 +133,7 @@ std::string underscored(std::string_view camelCase) {
 
 void upgradePlugin(Json& plugin, std::string_view tag, const MitsubaVersion& version) {
     if (!version.camelCase()) return;
-    const std::string type = plugin.value("type", "");
+    const std::string type = textOf(plugin, "type");
     if (tag == "texture") upgradeTexture(plugin);
     if (type == "bitmap") upgradeBitmap(plugin);
     if (type == "diffuse") rename(plugin, "diffuse_reflectance", "reflectance");

@@ -27,6 +27,8 @@ constexpr std::array kPluginTags{"bsdf",    "emitter", "film",  "integrator", "m
 
 bool isPluginTag(std::string_view tag) { return std::find(kPluginTags.begin(), kPluginTags.end(), tag) != kPluginTags.end(); }
 
+bool isReference(const Json& plugin) { return plugin.is_object() && plugin.value("type", Json()) == "ref" && plugin.value("id", Json()).is_string(); }
+
 /// One file being read.
 struct XmlFile {
     fs::path folder;  ///< from the scene's folder
@@ -48,6 +50,8 @@ public:
     XmlReader(const fs::path& folder, const SceneFileOptions& options) : folder_(folder), options_(options), values_(options.definitions) {}
 
     JsonDocument read(const fs::path& file) {
+        std::error_code error;
+        open_.push_back(fs::weakly_canonical(file, error));
         const auto xml = open(file, file.string(), 0);
         const pugi::xml_node root = xml->document.document_element();
         if (root.name() != std::string_view("scene")) complain(*xml, root, fmt::format("the outermost element is <{}>", root.name()), "a scene is a <scene>");
@@ -86,6 +90,8 @@ private:
     std::string place(const XmlFile& file, const pugi::xml_node& node, Json& object, const Parent& parent, const std::string& wanted);
     std::string fileFor(const XmlFile& file, const std::string& name) const;
     std::string propertyName(const XmlFile& file, const pugi::xml_node& node) const;
+    void followAliases(Json& plugin, std::set<std::string>& wanted) const;
+    void hoist(Json& plugin, const std::string& pointer, int depth, const std::set<std::string>& wanted);
     void followReferences();
     std::string listOfAsked() const {
         return asked_.empty() ? "it has no definitions" : "it asks for " + listInQuotes({asked_.begin(), asked_.end()});
@@ -98,8 +104,16 @@ private:
     std::vector<fs::path> searched_;  ///< folders of <path>, from the scene's folder
     Json scene_;
     std::vector<std::pair<std::string, std::string>> places_;
-    std::map<std::string, std::string> aliases_, named_;  ///< ids by alias; JSON pointers by id
-    std::vector<std::string> references_;                 ///< JSON pointers
+    std::map<std::string, std::string> aliases_;  ///< ids by alias
+    std::set<std::string> inScene_;               ///< ids of the scene's own entries
+    struct Hoisted {
+        std::string id, name;
+        Json plugin;
+    };
+    std::vector<Hoisted> hoisted_;                ///< nested plugins that others refer to
+    std::map<std::string, int> counters_;         ///< of names without one of their own, by JSON pointer
+    std::vector<fs::path> open_;                  ///< files that are being read, links followed
+    size_t bytes_ = 0;                            ///< of all files
     std::vector<std::string> substitutions_;
     size_t elements_ = 0;
 };
@@ -109,6 +123,8 @@ std::unique_ptr<XmlFile> XmlReader::open(const fs::path& path, const std::string
     file->name = name;
     file->depth = depth;
     file->text = readFile(path, kMaxJsonBytes);
+    bytes_ += file->text.size();
+    if (bytes_ > kMaxXmlBytes) fail(ExitCode::InvalidConfig, "{}: all files that the scene includes hold more than {} bytes", name, kMaxXmlBytes);
     file->lines.push_back(0);
     for (size_t i = 0; i < file->text.size(); ++i)
         if (file->text[i] == '\n') file->lines.push_back(i + 1);
@@ -134,6 +150,7 @@ void XmlReader::substitute(const XmlFile& file, const pugi::xml_node& node) {
     const auto isNameCharacter = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; };
     for (pugi::xml_attribute attribute : node.attributes()) {
         const std::string text = attribute.value();
+        if (!isUtf8(text)) complain(file, node, fmt::format("the attribute {} is not UTF-8", inQuotes(attribute.name())));
         if (text.find('$') == text.npos) continue;
         std::string result;
         for (size_t i = 0; i < text.size(); ++i) {
@@ -154,6 +171,9 @@ void XmlReader::substitute(const XmlFile& file, const pugi::xml_node& node) {
                 }
                 result += values_[name];
                 i += name.size();
+                // Definitions may hold others, and double each time.
+                if (result.size() > kMaxXmlAttribute)
+                    complain(file, node, fmt::format("the attribute {} is longer than {} bytes", inQuotes(attribute.name()), kMaxXmlAttribute));
             } else {
                 result += text[i];
             }
@@ -178,7 +198,8 @@ std::string XmlReader::place(const XmlFile& file, const pugi::xml_node& node, Js
     if (node.attribute("name")) {
         if (object.contains(name)) complain(file, node, fmt::format("{} stands twice in one element", inQuotes(name)));
     } else {
-        for (int i = 2; object.contains(name); ++i) name = fmt::format("{}_{}", wanted, i);
+        int& count = counters_[parent.pointer + '/' + wanted];
+        while (object.contains(name)) name = fmt::format("{}_{}", wanted, ++count + 1);
     }
     places_.emplace_back(parent.pointer + '/' + escapePointerStep(name), placeOf(file, node));
     return name;
@@ -210,7 +231,6 @@ void XmlReader::readElement(const XmlFile& file, const pugi::xml_node& node, Jso
         const std::string wanted = text("name").empty() ? "ref" : propertyName(file, node);
         const std::string name = place(file, node, object, parent, wanted);
         object[name] = {{"type", "ref"}, {"id", needs("id")}};
-        references_.push_back(parent.pointer + '/' + escapePointerStep(name));
     } else {
         const std::string name = place(file, node, object, parent, propertyName(file, node));
         // The albedo in a sky is the ground's.
@@ -220,6 +240,8 @@ void XmlReader::readElement(const XmlFile& file, const pugi::xml_node& node, Jso
             if (tag == "spectrum" && node.attribute("filename")) {
                 const SceneFile curve = findSceneFile(folder_, fileFor(file, text("filename")));
                 if (!curve.refusal.empty()) throw PropertyError{curve.refusal, curve.hint};
+                std::error_code error;
+                if (!fs::exists(curve.path, error)) throw PropertyError{fmt::format("there is no file {}", inQuotes(text("filename"))), {}};
                 value = readSpectrumFile(readFile(curve.path, kMaxJsonBytes), context);
             } else {
                 value = readProperty(node, context);
@@ -244,14 +266,14 @@ void XmlReader::readPlugin(const XmlFile& file, const pugi::xml_node& node, Json
     Json plugin = {{"type", type}};
     if (!id.empty()) plugin["id"] = id;
     const Parent self{parent.pointer + '/' + escapePointerStep(name), tag, parent.emits || tag == "emitter", parent.depth + 1};
-    if (!id.empty()) named_.emplace(id, self.pointer);
+    if (!id.empty() && parent.tag == "scene") inScene_.insert(id);
     readChildren(file, node, plugin, self);
     upgradePlugin(plugin, tag, file.version);
-    if (options_.lenient && replaceUnknown(tag, plugin, placeOf(file, node))) {
-        if (!plugin.is_null()) object[name] = std::move(plugin);
-        return;
-    }
     try {
+        if (options_.lenient && replaceUnknown(tag, plugin, placeOf(file, node))) {
+            if (!plugin.is_null()) object[name] = std::move(plugin);
+            return;
+        }
         object[name] = plainSpectrum(plugin, parent.emits).value_or(std::move(plugin));
     } catch (const PropertyError& error) {
         complain(file, node, error.message, error.hint);
@@ -280,13 +302,18 @@ void XmlReader::include(const XmlFile& file, const pugi::xml_node& node, Json& o
     const std::string name = fileFor(file, node.attribute("filename").value());
     const SceneFile found = findSceneFile(folder_, name);
     if (!found.refusal.empty()) complain(file, node, found.refusal, found.hint);
-    if (!fs::exists(found.path)) complain(file, node, fmt::format("there is no file {}", inQuotes(name)));
+    std::error_code error;
+    if (!fs::exists(found.path, error)) complain(file, node, fmt::format("there is no file {}", inQuotes(name)));
+    const fs::path real = fs::weakly_canonical(found.path, error);
+    if (std::find(open_.begin(), open_.end(), real) != open_.end()) complain(file, node, fmt::format("the file {} includes itself", inQuotes(name)));
+    open_.push_back(real);
     const auto included = open(found.path, found.path.string(), file.depth + 1);
     included->folder = fs::path(name).parent_path();
     const pugi::xml_node root = included->document.document_element();
     substitute(*included, root);
     if (root.name() == std::string_view("scene")) readChildren(*included, root, object, parent);
     else readElement(*included, root, object, parent);
+    open_.pop_back();
 }
 
 /// A file's name from the scene's folder: it may start at the folder of the file that names it, or at one of <path>.
@@ -301,29 +328,40 @@ std::string XmlReader::fileFor(const XmlFile& file, const std::string& name) con
     return name;
 }
 
+/// Puts the ids in the place of their aliases, and notes what is referred to.
+void XmlReader::followAliases(Json& plugin, std::set<std::string>& wanted) const {
+    if (isReference(plugin)) {
+        std::string id = plugin["id"];
+        for (size_t i = 0; i <= aliases_.size() && aliases_.contains(id); ++i) id = aliases_.at(id);
+        plugin["id"] = id;
+        wanted.insert(id);
+    } else if (plugin.is_object()) {
+        for (auto& member : plugin.items()) followAliases(member.value(), wanted);
+    }
+}
+
+/// Moves plugins that are referred to out of a plugin, the innermost first.
+void XmlReader::hoist(Json& plugin, const std::string& pointer, int depth, const std::set<std::string>& wanted) {
+    if (!plugin.is_object() || isReference(plugin)) return;
+    for (auto& member : plugin.items()) hoist(member.value(), pointer + '/' + escapePointerStep(member.key()), depth + 1, wanted);
+    if (depth < 2 || !plugin.contains("type") || !plugin.contains("id")) return;
+    const std::string id = plugin["id"];
+    std::string name = id;
+    const auto hasId = [&](const Hoisted& other) { return other.id == id; };
+    const auto hasName = [&](const Hoisted& other) { return other.name == name; };
+    if (!wanted.contains(id) || inScene_.contains(id) || std::any_of(hoisted_.begin(), hoisted_.end(), hasId)) return;
+    while (scene_.contains(name) || std::any_of(hoisted_.begin(), hoisted_.end(), hasName)) name += '_';
+    const auto place = std::find_if(places_.rbegin(), places_.rend(), [&](const auto& p) { return p.first == pointer; });
+    if (place != places_.rend()) places_.emplace_back('/' + escapePointerStep(name), std::string(place->second));
+    hoisted_.push_back({id, name, std::exchange(plugin, {{"type", "ref"}, {"id", id}})});
+}
+
 /// References name entries of the scene here; in Mitsuba they may name what is nested in others too.
 void XmlReader::followReferences() {
-    for (const std::string& pointer : references_) {
-        std::string id = scene_[Json::json_pointer(pointer)]["id"];
-        for (size_t i = 0; i <= aliases_.size() && aliases_.contains(id); ++i) id = aliases_[id];
-        scene_[Json::json_pointer(pointer)]["id"] = id;
-    }
-    for (const std::string& pointer : references_) {
-        const Json::json_pointer reference(pointer);
-        if (!scene_.contains(reference)) continue;
-        const std::string id = scene_[reference]["id"];
-        const auto target = named_.find(id);
-        if (target == named_.end() || pointerSteps(target->second).size() == 1) continue;
-        const Json::json_pointer nested(target->second);
-        std::string name = id;
-        while (scene_.contains(name)) name += '_';
-        Json plugin = scene_[nested];
-        scene_[nested] = {{"type", "ref"}, {"id", id}};
-        scene_[name] = std::move(plugin);
-        const auto place = std::find_if(places_.rbegin(), places_.rend(), [&](const auto& p) { return p.first == target->second; });
-        places_.emplace_back('/' + escapePointerStep(name), place->second);
-        target->second = '/' + escapePointerStep(name);
-    }
+    std::set<std::string> wanted;
+    followAliases(scene_, wanted);
+    hoist(scene_, "", 0, wanted);
+    for (Hoisted& entry : hoisted_) scene_[entry.name] = std::move(entry.plugin);
 }
 
 }  // namespace

@@ -34,6 +34,7 @@ public:
 
     const std::filesystem::path folder;  ///< of the scene
     const bool lenient;
+    double subdivided = 0;  ///< triangles of all subdivided meshes
 
 private:
     std::set<std::string> names_{"type", "id", "integrator", "sampler", "accelerator", "sensor"};

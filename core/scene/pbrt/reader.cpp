@@ -27,6 +27,8 @@ public:
           instances_(dictionary_, materials_) {}
 
     JsonDocument read(const fs::path& file) {
+        std::error_code error;
+        open_.push_back(fs::weakly_canonical(file, error));
         readFile(file, file.string(), 0);
         states_.needsClosed();
         const Place end{&files_.front(), 0};
@@ -63,6 +65,7 @@ private:
     Materials materials_;
     GraphicsStates states_;
     std::list<SourceFile> files_;
+    std::vector<fs::path> open_;  ///< that are being read, links followed
     size_t bytes_ = 0;
     bool inWorld_ = false;
     std::map<std::string, Single> settings_;  ///< by directive: Camera, Film, …
@@ -181,7 +184,12 @@ void Reader::include(Tokens& tokens, const Place& place, int depth) {
     if (!found.refusal.empty()) refuse(place, found.refusal, found.hint);
     std::error_code error;
     if (!fs::exists(found.path, error)) refuse(place, fmt::format("there is no file {}", inQuotes(name)));
+    const fs::path real = fs::weakly_canonical(found.path, error);
+    if (std::find(open_.begin(), open_.end(), real) != open_.end())
+        refuse(place, fmt::format("the file {} includes itself", inQuotes(name)));
+    open_.push_back(real);
     readFile(found.path, found.path.string(), depth + 1);
+    open_.pop_back();
 }
 
 /// What follows a type, with the defaults of Attribute directives for its kind.

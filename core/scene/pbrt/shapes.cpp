@@ -15,7 +15,8 @@ namespace ulam::pbrt {
 namespace {
 
 constexpr int kFinestSubdivision = 12;
-constexpr double kMostTriangles = 2e6;  // of a subdivided mesh
+constexpr double kMostTriangles = 2e6;      // of a subdivided mesh
+constexpr double kMostTrianglesOfAll = 2e7;  // of all subdivided meshes: a line of text makes one
 
 void needsFull(const Parameters& p, std::string_view name, double value, double full) {
     if (std::abs(value - full) > 1e-6 * std::max(1.0, std::abs(full)))
@@ -100,14 +101,17 @@ void readTriangles(const Parameters& p, ShapeRecord& shape, Dictionary&) {
     p.ignore({"faceIndices"});
 }
 
-void readSubdivision(const Parameters& p, ShapeRecord& shape, Dictionary&) {
+void readSubdivision(const Parameters& p, ShapeRecord& shape, Dictionary& dictionary) {
     const std::vector<double> control = p.needed("P", {"point3"}).numbers;
     const std::vector<double> indices = indicesOf(p, control.size() / 3);
     const int levels = p.integer("levels", 3);
     p.text("scheme", "loop");
-    if (levels < 0 || levels > kFinestSubdivision || double(indices.size() / 3) * std::pow(4, levels) > kMostTriangles)
+    const double count = double(indices.size() / 3) * std::pow(4, levels);
+    if (levels < 0 || levels > kFinestSubdivision || count > kMostTriangles)
         refuse(p.place(), fmt::format("{} levels of {} are too many: at most {}, and {:g} triangles", levels, p.owner(),
                                       kFinestSubdivision, kMostTriangles));
+    if ((dictionary.subdivided += count) > kMostTrianglesOfAll)
+        refuse(p.place(), fmt::format("all subdivided meshes together have more than {:g} triangles", kMostTrianglesOfAll));
     std::vector<Vec3d> positions;
     for (size_t i = 0; i < control.size(); i += 3) positions.emplace_back(control[i], control[i + 1], control[i + 2]);
     std::vector<std::array<int, 3>> triangles;

@@ -13,15 +13,6 @@ namespace {
 
 constexpr std::string_view kBlanks = " \t\r\n", kEnds = " \t\r\n\"[]#";
 
-bool isUtf8(const std::string& text) {
-    try {
-        Json(text).dump();  // JSON holds nothing else
-        return true;
-    } catch (const Json::exception&) {
-        return false;
-    }
-}
-
 }  // namespace
 
 SourceFile::SourceFile(std::string fileName, std::string_view text) : name(std::move(fileName)), lines{0} {

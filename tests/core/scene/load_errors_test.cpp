@@ -2,6 +2,7 @@
 
 #include "core/base/random.h"
 #include "core/image/image_io.h"
+#include "core/scene/loading/scene_file.h"
 #include "core/scene/plugins.h"
 #include "tests/core/scene/load_text.h"
 
@@ -158,6 +159,60 @@ TEST_CASE("files: links out of the folder and what is no file are refused") {
     CHECK(mentions(error("link.obj"), "leaves the folder"));
     CHECK(mentions(error("zero.obj"), "leaves the folder"));
     CHECK(mentions(error("folder.obj"), "no regular file"));
+}
+
+TEST_CASE("files: names that no system can follow") {
+    const SceneFolder folder("names_test");
+    folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    const auto error = [&](const std::string& name) {
+        return errorOf(sceneWith(R"("m": {"type": "obj", "filename": ")" + name + "\"}"), ExitCode::InvalidConfig, folder.path);
+    };
+    CHECK(mentions(error(""), "is empty"));
+    CHECK(mentions(error("a.obj\\u0000.png"), "a zero byte"));
+    CHECK(mentions(error(std::string(5000, 'a')), "cannot be found"));
+    std::filesystem::create_symlink("ring.obj", folder.path / "ring.obj");
+    CHECK(mentions(error("ring.obj"), "cannot be found"));
+}
+
+TEST_CASE("files: in folders that are allowed") {
+    const SceneFolder folder("allowed_test_scene"), other("allowed_test_other"), third("allowed_test_third");
+    const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    folder.write("own.obj", triangle);
+    for (const char* name : {"own.obj", "other.obj"}) other.write(name, triangle);
+    third.write("third.obj", triangle);
+    std::filesystem::create_directory(other.path / "part.obj");
+    std::filesystem::create_symlink(other.path / "other.obj", folder.path / "link.obj");
+    std::filesystem::create_symlink(third.path / "third.obj", other.path / "out.obj");
+    std::filesystem::create_symlink("/dev/zero", other.path / "zero.obj");
+    const auto find = [&](const std::string& name) { return findSceneFile(folder.path, name); };
+    const std::string absolute = (other.path / "other.obj").string(), up = "../" + other.path.filename().string() + "/other.obj";
+    for (const std::string& name : {absolute, up, std::string("link.obj")}) {
+        CHECK(mentions(find(name).refusal, "leaves the folder of the scene"));
+        CHECK(mentions(find(name).hint, "--resource-path"));
+    }
+    CHECK_FALSE(std::filesystem::exists(find("other.obj").path));
+
+    allowFilesFrom(other.path);
+    for (const std::string& name : {absolute, up, std::string("link.obj"), std::string("other.obj"), (folder.path / "own.obj").string()}) {
+        CHECK(find(name).refusal.empty());
+        CHECK(std::filesystem::is_regular_file(find(name).path));
+    }
+    CHECK(find("own.obj").path == folder.path / "own.obj");
+    CHECK(mentions(find("part.obj").refusal, "no regular file"));
+    for (const std::string& name : {std::string("out.obj"), std::string("zero.obj"), (third.path / "third.obj").string(), other.path.string() + "x/a.obj"})
+        CHECK(mentions(find(name).refusal, "leaves the folder of the scene"));
+    CHECK(find("none.obj").refusal.empty());
+    CHECK_THROWS_AS(allowFilesFrom(other.path / "none"), Error);
+    CHECK_THROWS_AS(allowFilesFrom(other.path / "own.obj"), Error);
+
+    folder.write("scene.xml", R"(<scene version="3.0.0"><include filename="parts/more.xml"/></scene>)");
+    std::filesystem::create_directory(other.path / "parts");
+    other.write("parts/more.xml", R"(<scene version="3.0.0"><shape type="obj" id="s"><string name="filename" value="near.obj"/></shape></scene>)");
+    other.write("parts/near.obj", triangle);
+    CHECK(readSceneDocument(folder.path / "scene.xml").json()["s"]["filename"] == "parts/near.obj");
+    folder.write("scene.pbrt", "Camera \"perspective\" WorldBegin Include \"shapes.pbrt\"");
+    other.write("shapes.pbrt", "Shape \"sphere\"");
+    CHECK(readSceneDocument(folder.path / "scene.pbrt").json()["shape"]["type"] == "sphere");
 }
 
 TEST_CASE("a scene file holds a scene, not the name of another") {

@@ -149,6 +149,53 @@ TEST_CASE("references: aliases, and what is nested in others") {
     CHECK(scene["t"]["bsdf"]["id"] == "p");
 }
 
+TEST_CASE("references: into what is nested in other plugins that move, or that are replaced") {
+    const Json scene = XmlScene{}.read(R"(
+        <shape type="sphere" id="s"><bsdf type="twosided" id="a"><bsdf type="diffuse" id="b"/></bsdf></shape>
+        <alias id="b" as="c"/><shape type="sphere" id="t"><ref id="a"/></shape><shape type="sphere" id="u"><ref id="c"/></shape>)").json();
+    CHECK(scene["s"]["bsdf"] == Json::parse(R"({"type": "ref", "id": "a"})"));
+    CHECK(scene["a"] == Json::parse(R"({"type": "twosided", "id": "a", "bsdf": {"type": "ref", "id": "b"}})"));
+    CHECK(scene["b"] == Json::parse(R"({"type": "diffuse", "id": "b"})"));
+    CHECK(scene["u"]["ref"]["id"] == "b");
+    const Json lenient = XmlScene{}.read(R"(<bsdf type="marble" id="m"><ref id="x"/></bsdf><medium type="m"><ref id="y"/></medium>)", "3.0.0",
+                                         {.definitions = {}, .lenient = true}).json();
+    CHECK(lenient["m"] == Json::parse(R"({"type": "diffuse", "id": "m", "reflectance": [1, 0, 1]})"));
+    CHECK_FALSE(lenient.contains("medium"));
+}
+
+TEST_CASE("bump maps, normal maps and mixtures of old files are brought to the new words") {
+    const XmlScene xml;
+    const std::string picture = R"(<texture type="bitmap" id="t"><string name="filename" value="a.png"/></texture>)";
+    const auto read = [&](const std::string& bsdf) { return entry(xml.read(picture + bsdf, "0.6.0"), "b"); };
+    const Json bumped = read(R"(<bsdf type="bumpmap" id="b"><texture type="scale"><float name="scale" value="3"/><ref id="t"/></texture><bsdf type="diffuse"/></bsdf>)");
+    CHECK(bumped["scale"] == 3.0);
+    CHECK(bumped["texture"] == Json::parse(R"({"type": "ref", "id": "t"})"));
+    const Json inlined = read(R"(<bsdf type="bumpmap" id="b"><texture type="scale"><float name="scale" value="2"/><texture type="checkerboard"/></texture><bsdf type="diffuse"/></bsdf>)");
+    CHECK(inlined["texture"]["type"] == "checkerboard");
+    CHECK(read(R"(<bsdf type="normalmap" id="b"><texture type="bitmap"><string name="filename" value="n.png"/></texture><bsdf type="diffuse"/></bsdf>)")["normalmap"]["type"] == "bitmap");
+    CHECK(read(R"(<bsdf type="mixturebsdf" id="b"><string name="weights" value="0.25, 0.75"/><bsdf type="diffuse"/><bsdf type="conductor"/></bsdf>)")["weights"] ==
+          Json::parse("[0.25, 0.75]"));
+}
+
+TEST_CASE("parameters of the wrong type are refused, or left for the loader to refuse") {
+    const XmlScene xml;
+    const auto texture = [&](const std::string& content) { return entry(xml.read("<texture type=\"bitmap\" id=\"t\">" + content + "</texture>", "0.5.0"), "t"); };
+    CHECK(texture(R"(<float name="filterType" value="1"/>)")["filter_type"] == 1.0);
+    CHECK(texture(R"(<integer name="wrapModeU" value="1"/><integer name="wrapModeV" value="1"/>)")["wrap_mode_u"] == 1);
+    const std::string relief = R"(<bsdf type="bumpmap" id="b"><string name="scale" value="x"/><texture type="scale"><texture type="bitmap"/></texture></bsdf>)";
+    CHECK(entry(xml.read(relief, "0.5.0"), "b")["scale"] == "x");
+    CHECK(xml.complaint(R"(<texture type="irregular"><float name="values" value="1"/></texture>)").has("needs two or more values at"));
+    CHECK(errorOf([&] { xml.read(R"(<bsdf type="regular"/>)", "3.0.0", {.definitions = {}, .lenient = true}); }).has("needs two or more values at"));
+    CHECK(xml.complaint(R"(<bsdf type="diffuse"><spectrum name="a" filename="none.spd"/></bsdf>)").has("there is no file \"none.spd\" at"));
+    CHECK(xml.complaint("<bsdf type=\"diffuse\" id=\"\xff\"/>").has("the attribute \"id\" is not UTF-8 at"));
+}
+
+TEST_CASE("definitions that double each time end") {
+    std::string doubling = R"(<default name="a0" value="aaaaaaaaaaaaaaaa"/>)";
+    for (int i = 1; i < 60; ++i) doubling += fmt::format(R"(<default name="a{0}_" value="$a{1}$a{1}"/>)", i, i == 1 ? "0" : fmt::format("{}_", i - 1));
+    CHECK(XmlScene{}.complaint(doubling).has("is longer than 1048576 bytes at"));
+}
+
 TEST_CASE("files that include others, in folders of their own") {
     const XmlScene xml;
     std::filesystem::create_directories(xml.folder.path / "parts");
@@ -164,7 +211,10 @@ TEST_CASE("files that include others, in folders of their own") {
     CHECK(document.root().at("x").at("filename").where().find("more.xml:1:49 (/x/filename)") != std::string::npos);
 
     xml.folder.write("loop.xml", R"(<scene version="3.0.0"><include filename="loop.xml"/></scene>)");
-    CHECK(xml.complaint(R"(<include filename="loop.xml"/>)").has("include each other deeper than 15"));
+    CHECK(xml.complaint(R"(<include filename="loop.xml"/>)").has("\"loop.xml\" includes itself at"));
+    for (int i = 0; i < 20; ++i) xml.folder.write(fmt::format("chain{}.xml", i), fmt::format(R"(<scene version="3.0.0"><include filename="chain{}.xml"/></scene>)", i + 1));
+    CHECK(xml.complaint(R"(<include filename="chain0.xml"/>)").has("include each other deeper than 15"));
+    CHECK(xml.complaint("<include filename=\"" + std::string(5000, 'a') + "\"/>").has("cannot be found"));
     CHECK(xml.complaint(R"(<include filename="none.xml"/>)").has("there is no file \"none.xml\" at"));
     CHECK(xml.complaint(R"(<include filename="../up.xml"/>)").has("leaves the folder"));
     CHECK(xml.complaint(R"(<include filename="/etc/passwd"/>)").has("leaves the folder"));

@@ -171,7 +171,9 @@ TEST_CASE("pbrt: included files, and their places") {
     CHECK(both.root().at("shape").where().find("ball.pbrt:4:3 (/shape)") != std::string::npos);
     CHECK(both.root().at("shape_2").where().find("scene.pbrt:3:20 (/shape_2)") != std::string::npos);
     pbrt.folder.write("loop.pbrt", "Include \"loop.pbrt\"");
-    CHECK(pbrt.complaint("Include \"loop.pbrt\"").has("include each other deeper than 15"));
+    CHECK(pbrt.complaint("Include \"loop.pbrt\"").has("\"loop.pbrt\" includes itself at"));
+    for (int i = 0; i < 20; ++i) pbrt.folder.write(fmt::format("chain{}.pbrt", i), fmt::format("Include \"chain{}.pbrt\"", i + 1));
+    CHECK(pbrt.complaint("Include \"chain0.pbrt\"").has("include each other deeper than 15"));
     pbrt.folder.write("open.pbrt", "AttributeBegin");
     CHECK(pbrt.complaint("Import \"open.pbrt\"").has("Import ends inside Attribute"));
     pbrt.folder.write("close.pbrt", "AttributeEnd");
