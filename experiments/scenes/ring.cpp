@@ -21,7 +21,7 @@ public:
         template <class V>
         void describe(V& v) {
             v("radius", radius, {.help = "of the ring; camera, floor and light scale with it", .min = 0.01, .max = 100});
-            v("height", height, {.help = "of the ring, in radii; the cusp is there if it is from 0.5 to 2.5 times the tangent of light_angle, nearly", .min = 0.05, .max = 2});
+            v("height", height, {.help = "of the ring, in radii; the cusp is lit if it is from 0.46 to 1.9 times the tangent of light_angle (of up to 60°)", .min = 0.05, .max = 2});
             v("alpha", alpha, {.help = "roughness of the metal; below 0.0001: smooth", .min = 0, .max = 0.5});
             v("light_angle", lightAngle, {.help = "of the light above the floor", .unit = "degrees", .min = 10, .max = 80});
             v("light_width", lightWidth, {.help = "angle under which the middle sees the light; 0.53: the sun. The irradiance stays", .unit = "degrees", .min = 0.05, .max = 20});

@@ -28,18 +28,22 @@ std::vector<double> energies(const std::vector<RenderResult>& runs) {
     return result;
 }
 
-/// Path tracing against bidirectional path tracing: different techniques with the same expectation.
+/// Path tracing against bidirectional path tracing: different techniques with the same expectation. `largestError` is
+/// twice the relative standard error of the difference that these seeds give.
 void checkEnergies(const Json& generator, int depth, double pathSpp, double bdptSpp, double largestError) {
     constexpr int kRuns = 20;
     const Scene scene = sceneOf(generator);
-    const auto path = energies(renderRuns(scene, {{"type", "path"}, {"max_depth", depth}}, samples(pathSpp), kRuns, 101));
-    const auto bdpt = energies(renderRuns(scene, {{"type", "bdpt"}, {"max_depth", depth}}, samples(bdptSpp), kRuns, 102));
+    const auto path =
+        energies(renderRuns(scene, {{"type", "path"}, {"max_depth", depth}}, samples(pathSpp), kRuns, 101));
+    const auto bdpt =
+        energies(renderRuns(scene, {{"type", "bdpt"}, {"max_depth", depth}}, samples(bdptSpp), kRuns, 102));
     const auto p = statistics::estimateMean(path), b = statistics::estimateMean(bdpt);
     const auto test = statistics::welchTest(p, b);
     const double error = std::sqrt(p.varianceOfMean + b.varianceOfMean) / b.mean;
-    INFO(generator.dump() << ": path " << p.mean << ", bdpt " << b.mean << ", t " << test.t << ", relative error " << error);
+    INFO(generator.dump() << ": path " << p.mean << ", bdpt " << b.mean << ", t " << test.t << ", relative error "
+                          << error);
     CHECK(test.p > 1e-5);
-    // So that the test says something: it sees differences of about 5 of these.
+    // So that the test says something: it sees differences of five of these.
     CHECK(error < largestError);
 }
 
@@ -47,24 +51,26 @@ void checkEnergies(const Json& generator, int depth, double pathSpp, double bdpt
 
 TEST_CASE("hard scenes: path tracing and bidirectional path tracing agree in energy") {
     SECTION("necklace") {
-        checkEnergies({{"type", "necklace"}}, 5, 64, 64, 0.01);
+        checkEnergies({{"type", "necklace"}, {"alpha", 0.2}}, 5, 64, 64, 0.004);
     }
     SECTION("keyhole") {
-        checkEnergies({{"type", "keyhole"}, {"hole_size", 2}, {"holes", 2}}, 5, 256, 128, 0.01);
+        checkEnergies({{"type", "keyhole"}, {"hole_size", 2}, {"holes", 2}}, 5, 256, 128, 0.016);
     }
     SECTION("egg_room") {
         checkEnergies({{"type", "egg_room"}, {"alpha", 0.3}}, 4, 256, 64, 0.01);
     }
     SECTION("mis_plates") {
-        checkEnergies({{"type", "mis_plates"}}, 3, 64, 64, 0.01);
+        checkEnergies({{"type", "mis_plates"}}, 3, 128, 128, 0.02);
     }
 }
 
 TEST_CASE("hard scenes: every contribution is finite, and the images are neither black nor dazzling") {
-    for (const char* name : {"door_ajar", "mis_plates", "keyhole", "torus_in_glass", "ring", "pool", "egg_room", "mirror_caustic_room", "cornell_box", "necklace"}) {
+    for (const char* name : {"door_ajar", "mis_plates", "keyhole", "torus_in_glass", "ring", "pool", "egg_room",
+                             "mirror_caustic_room", "cornell_box", "necklace"}) {
         Json generator = {{"type", name}};
         if (generator["type"] == "cornell_box") generator["variant"] = "glossy";
-        const RenderResult run = renderRuns(sceneOf(generator), {{"type", "bdpt"}, {"max_depth", 6}}, samples(64), 1, 103)[0];
+        const RenderResult run =
+            renderRuns(sceneOf(generator), {{"type", "bdpt"}, {"max_depth", 6}}, samples(64), 1, 103)[0];
         CHECK(run.statistics.nonFinite.empty());
         const double mean = tileMeans(run.image, 1)[0];
         INFO(name << ": " << mean);
@@ -78,7 +84,11 @@ TEST_CASE("hard scenes: every contribution is finite, and the images are neither
 TEST_CASE("ring: chains with lens perturbations through several specular chains refuse nothing") {
     const Json sampler = {{"type", "mlt"},
                           {"max_depth", 6},
-                          {"mutations", {{"bidirectional", {{"weight", 0.5}}}, {"lens", Json::object()}, {"caustic", Json::object()}, {"multi_chain", Json::object()}}}};
+                          {"mutations",
+                           {{"bidirectional", {{"weight", 0.5}}},
+                            {"lens", Json::object()},
+                            {"caustic", Json::object()},
+                            {"multi_chain", Json::object()}}}};
     Budget budget;
     budget.mutations = 1e6;
     const RenderResult run = renderRuns(sceneOf({{"type", "ring"}, {"alpha", 0}}, 64), sampler, budget, 1, 104)[0];

@@ -28,7 +28,11 @@ const std::vector<HardScene> kHardScenes{
     {"keyhole", {{"hole_size", 0.02, 4}, {"holes", 1, 16}, {"lamp_offset", 0, 0.85}}},
     {"torus_in_glass", {{"alpha", 0, 0.5}, {"light_width", 0.25, 5}}},
     {"ring",
-     {{"radius", 0.01, 100}, {"height", 0.05, 2}, {"alpha", 0, 0.5}, {"light_angle", 10, 80}, {"light_width", 0.05, 20}}},
+     {{"radius", 0.01, 100},
+      {"height", 0.05, 2},
+      {"alpha", 0, 0.5},
+      {"light_angle", 10, 80},
+      {"light_width", 0.05, 20}}},
     {"pool", {{"waves", 1, 64}, {"amplitude", 0, 0.12}, {"wavelength", 0.2, 2}, {"light_radius", 1e-4, 0.5}}},
     {"egg_room", {{"alpha", 0, 0.5}, {"ior", 1.05, 2.5}, {"walls", 0, 0.95}}},
     {"mirror_caustic_room", {{"share", 1e-5, 1}, {"walls", 0, 0.95}}},
@@ -72,8 +76,10 @@ struct Surface {
 
     explicit Surface(const Json& mesh) {
         const Json &p = mesh["positions"], &t = mesh["triangles"];
-        for (size_t i = 0; i < p.size(); i += 3) corners.emplace_back(p[i].get<double>(), p[i + 1].get<double>(), p[i + 2].get<double>());
-        for (size_t i = 0; i < t.size(); i += 3) triangles.push_back({t[i].get<size_t>(), t[i + 1].get<size_t>(), t[i + 2].get<size_t>()});
+        for (size_t i = 0; i < p.size(); i += 3)
+            corners.emplace_back(p[i].get<double>(), p[i + 1].get<double>(), p[i + 2].get<double>());
+        for (size_t i = 0; i < t.size(); i += 3)
+            triangles.push_back({t[i].get<size_t>(), t[i + 1].get<size_t>(), t[i + 2].get<size_t>()});
     }
 
     Vec3d lower() const {
@@ -140,7 +146,8 @@ void checkNormals(const Json& mesh) {
     REQUIRE(n.size() == 3 * surface.corners.size());
     for (size_t t = 0; t < surface.triangles.size(); ++t)
         for (const size_t corner : surface.triangles[t])
-            REQUIRE(surface.normal(t).dot({n[3 * corner].get<double>(), n[3 * corner + 1].get<double>(), n[3 * corner + 2].get<double>()}) > 0);
+            REQUIRE(surface.normal(t).dot({n[3 * corner].get<double>(), n[3 * corner + 1].get<double>(),
+                                           n[3 * corner + 2].get<double>()}) > 0);
 }
 
 /// ∬ of a profile's polygon turned into an n-gon: a body of revolution of `sides` sides has this share of the volume of
@@ -154,7 +161,9 @@ void checkCamera(const Scene& scene, const Vec3d& origin, const Vec3d& target, d
     const Vec3f eye = scene.sensor->samplePosition({}).position;
     CHECK(length(eye - Vec3f(origin)) < 1e-4f);
     const float w = float(scene.sensor->width()), h = float(scene.sensor->height());
-    const auto direction = [&](float x, float y) { return scene.sensor->direction(scene.sensor->samplePosition({}), {x, y}); };
+    const auto direction = [&](float x, float y) {
+        return scene.sensor->direction(scene.sensor->samplePosition({}), {x, y});
+    };
     const Vec3f ahead = direction(w / 2, h / 2);
     CHECK(dot(ahead, normalize(Vec3f(target - origin))) == Approx(1).epsilon(1e-5));
     const Vec3f side = alongWidth ? direction(0, h / 2) : direction(w / 2, 0);
@@ -171,7 +180,8 @@ void checkDiscLight(const Scene& scene, const Vec3d& center, const Vec3d& target
     CHECK(half == Approx(radians(width / 2)).epsilon(1e-5));
     CHECK(length(disk.axisX) == Approx(length(disk.axisY)));
     // E = π L sin² of the disc's half angle (Lambert 1760).
-    CHECK(kPi * std::get<AreaEmitter>(scene.emitters[light.emitter]).emitted.x * std::pow(std::sin(half), 2) == Approx(irradiance).epsilon(1e-5));
+    CHECK(kPi * std::get<AreaEmitter>(scene.emitters[light.emitter]).emitted.x * std::pow(std::sin(half), 2) ==
+          Approx(irradiance).epsilon(1e-5));
 }
 
 double emittedPower(const Scene& scene, const std::string& name) {
@@ -186,7 +196,8 @@ TEST_CASE("hard scenes: knobs have the documented ranges, both ends make scenes,
     constexpr size_t kMostTriangles = 250'000, kMostShapes = 2'010;
     const auto generators = scenePlugins(PluginKind::Generators);
     for (const HardScene& hardScene : kHardScenes) {
-        const auto info = std::find_if(generators.begin(), generators.end(), [&](const PluginInfo& g) { return g.name == hardScene.generator; });
+        const auto info = std::find_if(generators.begin(), generators.end(),
+                                       [&](const PluginInfo& g) { return g.name == hardScene.generator; });
         REQUIRE(info != generators.end());
         for (const Knob& knob : hardScene.knobs) {
             const auto described = std::find_if(info->parameters.begin(), info->parameters.end(),
@@ -209,12 +220,14 @@ TEST_CASE("hard scenes: knobs have the documented ranges, both ends make scenes,
             }
             const double step = described->type == "integer" ? 1 : 1e-3 * (knob.max - knob.min);
             for (const double value : {knob.min - step, knob.max + step})
-                CHECK_THROWS_WITH(sceneOf(hardScene.generator, {{knob.name, value}}), Catch::Contains(std::string("\"") + knob.name + "\""));
+                CHECK_THROWS_WITH(sceneOf(hardScene.generator, {{knob.name, value}}),
+                                  Catch::Contains(std::string("\"") + knob.name + "\""));
         }
         // Every number with two ends is in the table above; `seed` chooses, and makes nothing harder.
         for (const ParameterInfo& parameter : info->parameters)
             if (parameter.min && parameter.max && parameter.name != "seed")
-                CHECK(std::any_of(hardScene.knobs.begin(), hardScene.knobs.end(), [&](const Knob& k) { return k.name == parameter.name; }));
+                CHECK(std::any_of(hardScene.knobs.begin(), hardScene.knobs.end(),
+                                  [&](const Knob& k) { return k.name == parameter.name; }));
     }
     CHECK_THROWS_WITH(sceneOf("door_ajar", {{"floor", "wood"}}), Catch::Contains("\"floor\""));
     CHECK_THROWS_WITH(sceneOf("keyhole", {{"radiance", -1}}), Catch::Contains("\"radiance\""));
@@ -233,7 +246,8 @@ TEST_CASE("door_ajar: the gap is 2 w sin(θ/2) wide") {
         checkClosed(door, 59.7 * 121 * 2.1);
         // A corner of the door is in the hinge, another at the gap's far side.
         for (const Vec3d& place : {Vec3d(62.0, 0, -72.4), Vec3d(features.corner + features.across + features.down)})
-            CHECK(std::any_of(door.corners.begin(), door.corners.end(), [&](const Vec3d& c) { return (c - place).length() < 1e-4; }));
+            CHECK(std::any_of(door.corners.begin(), door.corners.end(),
+                              [&](const Vec3d& c) { return (c - place).length() < 1e-4; }));
         CHECK(door.lower().z == Approx(-72.4));  // the door opens into the viewer's room
     }
 }
@@ -241,9 +255,12 @@ TEST_CASE("door_ajar: the gap is 2 w sin(θ/2) wide") {
 TEST_CASE("door_ajar: light passes the gap or goes over the door, nowhere else") {
     for (const double angle : {0.5, 17.3, 45.0, 90.0}) {
         const Scene scene = sceneOf("door_ajar", {{"angle", angle}, {"objects", 0}});
-        const Imath::V2d hinge(62, -72.4), jamb(62 + 59.7, -72.4), edge = hinge + Imath::V2d(std::cos(radians(angle)), std::sin(radians(angle))) * 59.7;
+        const Imath::V2d hinge(62, -72.4), jamb(62 + 59.7, -72.4),
+            edge = hinge + Imath::V2d(std::cos(radians(angle)), std::sin(radians(angle))) * 59.7;
         const auto inWedge = [&](double x, double z, double margin) {
-            const auto leftOf = [&](const Imath::V2d& a, const Imath::V2d& b) { return (b.x - a.x) * (z - a.y) - (b.y - a.y) * (x - a.x) > -margin; };
+            const auto leftOf = [&](const Imath::V2d& a, const Imath::V2d& b) {
+                return (b.x - a.x) * (z - a.y) - (b.y - a.y) * (x - a.x) > -margin;
+            };
             return leftOf(hinge, jamb) && leftOf(jamb, edge) && leftOf(edge, hinge);
         };
         int throughGap = 0, overDoor = 0;
@@ -289,7 +306,8 @@ TEST_CASE("door_ajar: rooms, lamp, camera and pots are where they should be") {
     CHECK(lamp.area() == Approx(151.6 * 60.0));
     CHECK(lamp.normal(0).z < 0);  // away from the doorway
     CHECK(vectorOf(dictionary["lamp"]["emitter"]["radiance"]) == Vec3d(1704, 1852, 1950));
-    CHECK(emittedPower(sceneOf("door_ajar", {{"lamp_size", 0.1}}), "lamp") == Approx(emittedPower(scene, "lamp")).epsilon(1e-5));
+    CHECK(emittedPower(sceneOf("door_ajar", {{"lamp_size", 0.1}}), "lamp") ==
+          Approx(emittedPower(scene, "lamp")).epsilon(1e-5));
 
     const Json plastic = dictionaryOf("door_ajar", {{"floor", "rough_plastic"}, {"floor_alpha", 0.1}})["floor"]["bsdf"];
     CHECK(plastic["type"] == "roughplastic");
@@ -308,7 +326,8 @@ TEST_CASE("door_ajar: rooms, lamp, camera and pots are where they should be") {
             CHECK(lid["bsdf"] == pot["bsdf"]);
             const Surface body(pot);
             CHECK(body.boundary().empty());
-            CHECK(body.volume() > 0.5 * (body.upper() - body.lower()).x * (body.upper() - body.lower()).y * (body.upper() - body.lower()).z);
+            CHECK(body.volume() > 0.5 * (body.upper() - body.lower()).x * (body.upper() - body.lower()).y *
+                                      (body.upper() - body.lower()).z);
             checkNormals(pot);
             CHECK(body.lower().y > table.upper().y);
             for (const int k : {0, 2}) {
@@ -318,7 +337,8 @@ TEST_CASE("door_ajar: rooms, lamp, camera and pots are where they should be") {
             // Lids touch nothing, pots do not meet.
             lids.push_back(vectorOf(lid["center"]));
             CHECK(lids.back().y - lid["radius"].get<double>() > body.upper().y);
-            for (int j = 0; j < i; ++j) CHECK((lids.back() - lids[size_t(j)]).length() > (body.upper() - body.lower()).x);
+            for (int j = 0; j < i; ++j)
+                CHECK((lids.back() - lids[size_t(j)]).length() > (body.upper() - body.lower()).x);
         }
     }
 }
@@ -330,7 +350,8 @@ TEST_CASE("door_ajar: both rooms are closed and look inwards") {
         for (int i = 0; i < 20000; ++i) {
             const bool viewer = i % 2 == 0;
             // Above lamp, door and pots.
-            const Vec3f origin(float(-200 + 370 * random()), float(138 + 6 * random()), float(viewer ? -70 + 290 * random() : -390 + 310 * random()));
+            const Vec3f origin(float(-200 + 370 * random()), float(138 + 6 * random()),
+                               float(viewer ? -70 + 290 * random() : -390 + 310 * random()));
             const Vec3f direction = squareToSphere(random(), random());
             const Vertex v = firstHit(scene, origin, direction);
             const std::string& what = scene.shapes[v.shape].id;
@@ -341,7 +362,8 @@ TEST_CASE("door_ajar: both rooms are closed and look inwards") {
 }
 
 TEST_CASE("mis_plates: lights of equal power") {
-    const std::array<std::array<double, 3>, 4> lights{{{-3.75, 0.03333, 901.803}, {-1.25, 0.1, 100}, {1.25, 0.3, 11.1111}, {3.75, 0.9, 1.23457}}};
+    const std::array<std::array<double, 3>, 4> lights{
+        {{-3.75, 0.03333, 901.803}, {-1.25, 0.1, 100}, {1.25, 0.3, 11.1111}, {3.75, 0.9, 1.23457}}};
     const Json dictionary = dictionaryOf("mis_plates"), smaller = dictionaryOf("mis_plates", {{"light_size", 0.25}});
     for (size_t i = 0; i < lights.size(); ++i) {
         const auto& [x, radius, radiance] = lights[i];
@@ -350,7 +372,9 @@ TEST_CASE("mis_plates: lights of equal power") {
         CHECK(dictionary[name]["radius"] == radius);
         CHECK(radianceOf(dictionary[name]) == radiance);
         CHECK(smaller[name]["radius"] == 0.25 * radius);
-        const auto power = [&](const Json& d) { return 4 * kPi * kPi * std::pow(d[name]["radius"].get<double>(), 2) * radianceOf(d[name]); };
+        const auto power = [&](const Json& d) {
+            return 4 * kPi * kPi * std::pow(d[name]["radius"].get<double>(), 2) * radianceOf(d[name]);
+        };
         // The numbers are rounded: 0.03333² of four digits makes 0.2 %.
         CHECK(power(dictionary) == Approx(4 * kPi * kPi).epsilon(2e-3));
         CHECK(power(smaller) == Approx(power(dictionary)));
@@ -402,7 +426,8 @@ TEST_CASE("keyhole: the openings are 2.6 % of the ceiling, however many there ar
             const Surface slab(dictionary["slab"]);
             double closed = 0;
             for (size_t i = 0; i < slab.triangles.size(); ++i)
-                if (slab.normal(i).y < 0 && slab.corners[slab.triangles[i][0]].y == 1.99) closed += slab.normal(i).length() / 2;
+                if (slab.normal(i).y < 0 && slab.corners[slab.triangles[i][0]].y == 1.99)
+                    closed += slab.normal(i).length() / 2;
             INFO(holes << " holes a side, factor " << size);
             CHECK(ceiling - closed == Approx(opening * size * size).margin(1e-10));
             // Open only where it meets the walls, which are further than it is thick.
@@ -422,7 +447,8 @@ TEST_CASE("keyhole: each hole is a feature, and light comes down through them on
         REQUIRE(scene.features.names.size() == size_t(holes * holes));
         for (int row = 0; row < holes; ++row)
             for (int column = 0; column < holes; ++column) {
-                const Vec3f middle(float(-1.02 + 2.02 * (column + 0.5) / holes), 2, float(-1.04 + 2.03 * (row + 0.5) / holes));
+                const Vec3f middle(float(-1.02 + 2.02 * (column + 0.5) / holes), 2,
+                                   float(-1.04 + 2.03 * (row + 0.5) / holes));
                 const uint32_t feature = scene.features.crossed(middle + Vec3f(0, 0.1f, 0), middle - Vec3f(0, 0.1f, 0));
                 REQUIRE(feature == uint32_t(row * holes + column));
                 REQUIRE(scene.features.names[feature] == "hole_" + std::to_string(row) + "_" + std::to_string(column));
@@ -432,7 +458,9 @@ TEST_CASE("keyhole: each hole is a feature, and light comes down through them on
         int passed = 0;
         for (int i = 0; i < 20000; ++i) {
             const bool above = i % 2 == 0;
-            const Vec3f origin(float(-1 + 1.98 * random()), float(above ? 2.06 + 1.7 * random() : 1.21 + 0.77 * random()), float(-1 + 1.95 * random()));
+            const Vec3f origin(float(-1 + 1.98 * random()),
+                               float(above ? 2.06 + 1.7 * random() : 1.21 + 0.77 * random()),
+                               float(-1 + 1.95 * random()));
             const Vec3f direction = squareToSphere(random(), random());
             Hit hit{};
             if (!scene.rays().intersect(origin, direction, hit)) {
@@ -508,15 +536,16 @@ TEST_CASE("torus_in_glass: a torus inside a closed block") {
 }
 
 TEST_CASE("ring: the cusp of the caustic is where mirrors focus") {
-    // Near the axis a circle of radius R is a mirror of focal length R / 2: a light at s from it has its image at s' with
-    // 1/s + 1/s' = 2/R, the mirror equation (Born and Wolf, "Principles of Optics", 4.4.2), s' = sR / (2s − R). The rays
-    // touch their envelope there, the cusp. A vertical wall keeps a ray's slope, so seen from above rays are those of the
-    // plane. Rays at the small angle φ from the axis miss the image by O(φ²).
+    // Near the axis a circle of radius R is a mirror of focal length R / 2: a light at s from it has its image at s'
+    // with 1/s + 1/s' = 2/R, the mirror equation (Born and Wolf, "Principles of Optics", 4.4.2), s' = sR / (2s − R).
+    // The rays touch their envelope there, the cusp. A vertical wall keeps a ray's slope, so seen from above rays are
+    // those of the plane. Rays at the small angle φ from the axis miss the image by O(φ²).
     constexpr double kAside = 0.01, kLightDistance = 10;
     for (const double radius : {0.5, 1.0, 7.0})
         for (const double angle : {10.0, 30.0, 60.0}) {
             const Scene scene = sceneOf("ring", {{"radius", radius}, {"height", 2}, {"light_angle", angle}});
-            const Vec3d light = Vec3d(-std::cos(radians(angle)), std::sin(radians(angle)), 0) * (kLightDistance * radius);
+            const Vec3d light =
+                Vec3d(-std::cos(radians(angle)), std::sin(radians(angle)), 0) * (kLightDistance * radius);
             const double s = radius - light.x, image = s * radius / (2 * s - radius), cusp = radius - image;
             CHECK(cusp > radius * 0.35);
             CHECK(cusp < radius * 0.5);
@@ -536,10 +565,12 @@ TEST_CASE("ring: the cusp of the caustic is where mirrors focus") {
 }
 
 TEST_CASE("ring: the cusp is lit where the ring is neither too low nor too high") {
-    // The ray that is reflected to the cusp meets the wall at h = H s' / (s + s'), H the light's height, and comes over
-    // the near edge at h + 2 H / (s + s') radii. Both are 0.5 and 2.5 times the tangent of light_angle for a far light.
-    for (const double angle : {10.0, 30.0, 50.0}) {
-        const double height = 10 * std::sin(radians(angle)), s = 10 * std::cos(radians(angle)) + 1, image = s / (2 * s - 1);
+    // The ray that is reflected to the cusp meets the wall at the height h = H s' / (s + s'), H the light's, and comes
+    // over the near edge at h + 2 H / (s + s') (in radii). A far light would make that 0.5 and 2.5 times the tangent of
+    // light_angle; at 10 radii it is less, and from 0.46 to 1.9 times lies within for angles of up to 60°.
+    for (const double angle : {10.0, 30.0, 50.0, 60.0}) {
+        const double height = 10 * std::sin(radians(angle)), s = 10 * std::cos(radians(angle)) + 1,
+                     image = s / (2 * s - 1);
         const double low = height * image / (s + image), high = low + 2 * height / (s + image);
         const auto lit = [&](double ring) {
             const Scene scene = sceneOf("ring", {{"height", ring}, {"light_angle", angle}});
@@ -552,6 +583,8 @@ TEST_CASE("ring: the cusp is lit where the ring is neither too low nor too high"
             return scene.shapes[v.shape].id == "ring" && length(v.position - wall) < 1e-3f;
         };
         INFO("angle " << angle << ": from " << low << " to " << high);
+        CHECK(low < 0.46 * std::tan(radians(angle)));
+        CHECK(high > 1.9 * std::tan(radians(angle)));
         CHECK_FALSE(lit(std::max(0.05, low * 0.98)));
         CHECK(lit(low * 1.02));
         if (high < 1.9) {
@@ -562,7 +595,8 @@ TEST_CASE("ring: the cusp is lit where the ring is neither too low nor too high"
     for (const double angle : {10.0, 30.0, 80.0})
         for (const double width : {0.05, 0.53, 20.0}) {
             const Scene scene = sceneOf("ring", {{"light_angle", angle}, {"light_width", width}, {"radius", 2}});
-            checkDiscLight(scene, Vec3d(-std::cos(radians(angle)), std::sin(radians(angle)), 0) * 20, {0, 0, 0}, width, 4);
+            checkDiscLight(scene, Vec3d(-std::cos(radians(angle)), std::sin(radians(angle)), 0) * 20, {0, 0, 0}, width,
+                           4);
         }
     const Json ring = dictionaryOf("ring", {{"alpha", 0.02}, {"radius", 3}, {"height", 0.5}})["ring"];
     CHECK(ring["radius"] == 3.0);
@@ -572,8 +606,10 @@ TEST_CASE("ring: the cusp is lit where the ring is neither too low nor too high"
 }
 
 TEST_CASE("pool: water that is as high and as wide as it should be") {
-    for (const auto& [waves, amplitude, wavelength] : {std::tuple(1, 0.12, 0.2), std::tuple(8, 0.03, 0.5), std::tuple(64, 0.0, 2.0)}) {
-        const Json dictionary = dictionaryOf("pool", {{"waves", waves}, {"amplitude", amplitude}, {"wavelength", wavelength}});
+    for (const auto& [waves, amplitude, wavelength] :
+         {std::tuple(1, 0.12, 0.2), std::tuple(8, 0.03, 0.5), std::tuple(64, 0.0, 2.0)}) {
+        const Json dictionary =
+            dictionaryOf("pool", {{"waves", waves}, {"amplitude", amplitude}, {"wavelength", wavelength}});
         const Surface water(dictionary["water"]);
         checkNormals(dictionary["water"]);
         for (size_t i = 0; i < water.triangles.size(); ++i) REQUIRE(water.normal(i).y > 0);
@@ -584,7 +620,8 @@ TEST_CASE("pool: water that is as high and as wide as it should be") {
         CHECK(water.upper().z == 1);
         // Open at the tiles only.
         for (const auto& [from, to] : water.boundary())
-            for (const size_t i : {from, to}) REQUIRE((std::abs(water.corners[i].x) == 1 || std::abs(water.corners[i].z) == 1));
+            for (const size_t i : {from, to})
+                REQUIRE((std::abs(water.corners[i].x) == 1 || std::abs(water.corners[i].z) == 1));
         const double cells = std::sqrt(double(water.triangles.size()) / 2);
         // Wavelengths differ by a factor of √2 both ways.
         CHECK(wavelength / std::sqrt(2.0) / (2 / cells) >= 24);
@@ -668,7 +705,10 @@ TEST_CASE("egg_room: egg, table, lamps and camera") {
     CHECK(spot.normal(0).normalized().dot((p1 - p0).normalized()) == Approx(1));
     const Vertex lit = firstHit(scene, Vec3f(middle + spot.normal(0).normalized() * 1e-3), Vec3f(p1 - p0).normalized());
     CHECK(scene.shapes[lit.shape].id != "tube");
-    CHECK(scene.shapes[firstHit(scene, Vec3f(middle - spot.normal(0).normalized() * 1e-3), Vec3f(p0 - p1).normalized()).shape].id == "tube_end");
+    CHECK(scene
+              .shapes[firstHit(scene, Vec3f(middle - spot.normal(0).normalized() * 1e-3), Vec3f(p0 - p1).normalized())
+                          .shape]
+              .id == "tube_end");
     const Vec3f eye = scene.sensor->samplePosition({}).position;
     CHECK(length(eye - Vec3f(-0.224f, -6.642f, 0.366f)) < 1e-6f);
     CHECK(dictionary["sensor"]["fov"] == 44.55);
@@ -692,8 +732,8 @@ TEST_CASE("egg_room: egg, table, lamps and camera") {
 }
 
 TEST_CASE("mirror_caustic_room: the mirror gets just its share of the sun") {
-    // The sun's parallel light maps the window to the mirror's plane by a shear, which keeps ratios of areas. The mirror
-    // reaches beyond the window's image but on one side, where it ends at the share of the image's width.
+    // The sun's parallel light maps the window to the mirror's plane by a shear, which keeps ratios of areas. The
+    // mirror reaches beyond the window's image but on one side, where it ends at the share of the image's width.
     for (const double share : {1e-5, 0.02, 0.1, 0.5, 1.0}) {
         const Scene scene = sceneOf("mirror_caustic_room", {{"share", share}});
         REQUIRE(scene.features.names == std::vector<std::string>{"window"});
@@ -801,12 +841,13 @@ TEST_CASE("necklace: beads of one size at equal distances along the curve") {
         }
         INFO(beads << " beads, " << shortest << " to " << longest);
         CHECK(2 * radius == Approx(0.98 * shortest));
-        // Chords of equal arcs: none is longer than its arc, and the more there are, the nearer they come to it. Places are
-        // corners of a polygon of 2^16, so a step may miss two corners' distance.
+        // Chords of equal arcs: none is longer than its arc, and the more there are, the nearer they come to it. Places
+        // are corners of a polygon of 2^16, so a step may miss two corners' distance.
         const double arc = curve / beads, corner = curve / (1 << 16) * 1.5;
         CHECK(longest <= arc + 2 * corner);
         if (beads >= 64) CHECK(shortest >= arc * 0.98 - 2 * corner);
     }
     CHECK(dictionaryOf("necklace", {{"alpha", 0.1}})["metal"]["alpha"] == 0.1);
-    for (const double width : {0.1, 2.0, 20.0}) checkDiscLight(sceneOf("necklace", {{"light_width", width}}), {-4, 5, -3}, {0, 0, 0}, width, 3);
+    for (const double width : {0.1, 2.0, 20.0})
+        checkDiscLight(sceneOf("necklace", {{"light_width", width}}), {-4, 5, -3}, {0, 0, 0}, width, 3);
 }
