@@ -1,5 +1,5 @@
 #pragma once
-// Objects that are placed many times: groups of shapes, or copies of the shapes where Ulam has no groups.
+// Objects that are placed many times: groups of shapes and their instances.
 
 #include "core/scene/pbrt/shapes.h"
 
@@ -32,7 +32,6 @@ private:
         Place place;
     };
 
-    void copy(const Object& object, const Instance& instance);
     void refer(Object& object, const Instance& instance);
 
     Dictionary& dictionary_;
@@ -40,7 +39,6 @@ private:
     std::map<std::string, Object> objects_;
     Object* open_ = nullptr;
     std::vector<Instance> instances_;
-    double copies_ = 0, numbers_ = 0;
 };
 
 }  // namespace ulam::pbrt

@@ -294,10 +294,6 @@ Json Materials::mix(const Parameters& p) {
     if (names.texts.size() != 2)
         refuse(names.place, fmt::format("{} mixes two materials, found {}", p.owner(), names.texts.size()));
     const Texture amount = textures_.number(p, "amount", 0.5);
-    if (!contains(scenePlugins(PluginKind::Bsdfs), "blendbsdf")) {
-        dictionary_.unsupported(p.owner(), p.place(), {}, "magenta takes its place");
-        return magenta();
-    }
     Json result = {{"type", "blendbsdf"}, {"weight", value(amount)}};
     int number = 0;
     for (const std::string& name : names.texts) {
