@@ -57,8 +57,9 @@ int writeAll(int file, std::string_view bytes) {
     return 0;
 }
 
-int writeFlushClose(Descriptor& file, std::string_view bytes) {
-    if (const int error = writeAll(file.number(), bytes)) return error;
+int writeFlushClose(Descriptor& file, std::span<const std::string_view> parts) {
+    for (const std::string_view part : parts)
+        if (const int error = writeAll(file.number(), part)) return error;
     // Pipes and devices have nothing to flush and say EINVAL or ENOTSUP.
     if (::fsync(file.number()) != 0 && errno != EINVAL && errno != ENOTSUP) return errno;
     return file.close() ? 0 : errno;
@@ -119,6 +120,10 @@ std::string readFile(const std::filesystem::path& path, std::size_t maxBytes) {
 }
 
 void writeFileAtomically(const std::filesystem::path& path, std::string_view bytes) {
+    writeFileAtomically(path, std::span(&bytes, 1));
+}
+
+void writeFileAtomically(const std::filesystem::path& path, std::span<const std::string_view> parts) {
     const std::filesystem::path target = behindLinks(path);
     struct stat status {};
     const bool exists = ::stat(target.c_str(), &status) == 0;
@@ -126,7 +131,7 @@ void writeFileAtomically(const std::filesystem::path& path, std::string_view byt
     if (exists && !S_ISREG(status.st_mode)) {
         Descriptor file(::open(target.c_str(), O_WRONLY | O_CLOEXEC));
         if (file.number() < 0) failToWrite(path, errno);
-        if (const int error = writeFlushClose(file, bytes)) failToWrite(path, error);
+        if (const int error = writeFlushClose(file, parts)) failToWrite(path, error);
         return;
     }
 
@@ -142,7 +147,7 @@ void writeFileAtomically(const std::filesystem::path& path, std::string_view byt
     Descriptor file(number);
     if (number < 0) failToWrite(path, errno);
 
-    int error = writeFlushClose(file, bytes);
+    int error = writeFlushClose(file, parts);
     if (!error && ::rename(temporary.c_str(), target.c_str()) != 0) error = errno;
     if (error) {
         ::unlink(temporary.c_str());

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <limits>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -18,6 +19,8 @@ std::string readFile(const std::filesystem::path& path, std::size_t maxBytes = s
 /// not a regular file (a device, a pipe) is written in place. Fails with CannotWrite and the system's reason, leaving
 /// the old file untouched and no temporary file behind. The folder must exist.
 void writeFileAtomically(const std::filesystem::path& path, std::string_view bytes);
+/// The same of parts that follow each other.
+void writeFileAtomically(const std::filesystem::path& path, std::span<const std::string_view> parts);
 
 /// Removes the temporary files in a folder, and in the folders below, that processes left when they were killed while
 /// writing. Those of other processes that still run stay, and so does what cannot be removed.

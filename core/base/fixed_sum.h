@@ -17,6 +17,10 @@ public:
         sum_ += (static_cast<__int128>(static_cast<int64_t>(whole)) << 64) + static_cast<uint64_t>((x - whole) * 0x1p64);
     }
     void add(const FixedSum& other) { sum_ += other.sum_; }
+    template <class Archive>
+    void archive(Archive& a) {
+        a.bytes(&sum_, sizeof sum_);
+    }
     double value() const { return static_cast<double>(sum_) * 0x1p-64; }
 
 private:

@@ -24,6 +24,12 @@ public:
         sums_[pixel][2].add(b);
     }
     void add(const FilmPlane& other);
+    template <class Archive>
+    void archive(Archive& a) {
+        constexpr size_t kPixel = sizeof sums_[0];
+        sums_.resize(a.count(sums_.size(), kPixel));
+        a.bytes(sums_.data(), sums_.size() * kPixel);
+    }
     /// Both ends: a pixel may lie on two cache lines.
     [[gnu::always_inline]] void fetch(size_t pixel) const {
         __builtin_prefetch(&sums_[pixel], 1);
@@ -60,6 +66,15 @@ public:
     }
 
     void merge(const Film& other);
+    /// Takes everything from another film and leaves that empty.
+    void take(Film& other) {
+        merge(other);
+        other = Film(width_, height_, filter_);
+    }
+    template <class Archive>
+    void archive(Archive& a) {
+        a(samples_, splats_, counts_, nonFinite_);
+    }
     uint64_t nonFinite() const { return nonFinite_; }
 
     /// Means of the samples plus splatScale × splats.

@@ -22,6 +22,11 @@ struct Image {
 
     bool operator==(const Image&) const = default;
 
+    template <class Archive>
+    void archive(Archive& a) {
+        a(width, height, pixels);
+    }
+
 private:
     std::size_t index(int x, int y) const {
         return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);

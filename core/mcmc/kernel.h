@@ -14,6 +14,11 @@ struct Chain {
     std::vector<double> suitability;  ///< weight_j · suit_j(x)
     double z = 0;                     ///< their sum Z(x)
     uint32_t feature = kNone;         ///< label of x's brightest splat that has one
+
+    template <class Archive>
+    void archive(Archive& a) {
+        a(index, step, x, suitability, z, feature);
+    }
 };
 
 /// What one step did.

@@ -19,6 +19,11 @@ struct Splat {
     Spectrum value;                ///< f / π of this part
     uint32_t feature;        ///< index of the last feature crossed before the camera, or kNone
 
+    template <class Archive>
+    void archive(Archive& a) {
+        a(raster, value, feature);
+    }
+
     Splat() {}  // left open: arrays of them are made often
     Splat(const Vec2f& where, const Spectrum& what, uint32_t label = kNone) : raster(where), value(what), feature(label) {}
 };
@@ -39,6 +44,12 @@ public:
     Splat& operator[](int i) { return splats_[i]; }
     const Splat& operator[](int i) const { return splats_[i]; }
 
+    template <class Archive>
+    void archive(Archive& a) {
+        a(size_);
+        for (int i = 0; i < size_; ++i) a(splats_[size_t(i)]);
+    }
+
 private:
     int size_;
     std::array<Splat, 2 * (kMaxDepth + 2)> splats_;
@@ -47,6 +58,12 @@ private:
 /// A point of the chain's space, and what the next step can reuse. Copies copy what is used.
 struct Sample {
     Sample() {}
+
+    /// What is used of it: two states are equal exactly if their bytes are.
+    template <class Archive>
+    void archive(Archive& a) {
+        a(u, technique, path, factors, logDensity, logTarget, splats);
+    }
 
     PrimaryVector u;       ///< empty if only the path is known
     Technique technique;   ///< that makes the path from u

@@ -24,6 +24,10 @@ struct MutationStatistics {
     double seconds = 0;                              ///< thread time, extrapolated from timed steps
     double squaredJump = 0;                          ///< Σ α · squared raster distance, pixels²
 
+    template <class Archive>
+    void archive(Archive& a) {
+        a(proposed, accepted, zero, rejected, seconds, squaredJump);
+    }
     void merge(const MutationStatistics& o) {
         proposed += o.proposed, accepted += o.accepted, zero += o.zero;
         for (int i = 0; i < kRejectReasons; ++i) rejected[i] += o.rejected[i];

@@ -29,6 +29,11 @@ public:
         draws_.reserve(kMost);
     }
 
+    template <class Archive>
+    void archive(Archive& a) {
+        a(origin_, draws_, turn_, stride_);
+    }
+
     const Vec2f& origin() const { return origin_; }  ///< raster position of the first state
     const std::vector<Draw>& draws() const { return draws_; }
 

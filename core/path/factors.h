@@ -28,6 +28,13 @@ struct PathFactors {
         std::copy(other.at.begin() + first, other.at.begin() + last, at.begin() + to);
     }
 
+    template <class Archive>
+    void archive(Archive& a) {
+        a(size);
+        for (int i = 0; i < size; ++i) a(at[size_t(i)]);
+        for (int i = 0; i + 1 < size; ++i) a(edge[size_t(i)]);
+    }
+
     /// Area density of x_i when a walk from the light arrives from x_{i−1}; without Russian roulette. i ≥ 1.
     double fromLight(int i) const { return edge[i - 1].toAreaB(at[i - 1].pdfToCamera); }
     /// Area density of x_i when a walk from the camera arrives from x_{i+1}; without Russian roulette. i < k.

@@ -29,6 +29,11 @@ struct Edge {
         cosB = cosine(b, direction);
     }
 
+    template <class Archive>
+    void archive(Archive& a) {
+        a(direction, cosA, cosB, inverseD2);
+    }
+
     /// G(a↔b) = |cosθ_a cosθ_b| / |a−b|²; a point at infinity contributes neither cosine nor distance.
     double geometry() const { return cosA * cosB * inverseD2; }
     /// Density of b per area from the density of the direction a→b per solid angle (from infinity: from the density

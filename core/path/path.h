@@ -11,6 +11,11 @@ namespace ulam {
 struct Technique {
     int s = 0, t = 0;
     bool operator==(const Technique&) const = default;
+
+    template <class Archive>
+    void archive(Archive& a) {
+        a(s, t);
+    }
 };
 
 class Path {
@@ -32,6 +37,12 @@ public:
     const Vertex& light() const { return vertices_[0]; }
     const Vertex& camera() const { return vertices_[size_ - 1]; }
     void append(const Vertex& v) { vertices_[size_++] = v; }
+
+    template <class Archive>
+    void archive(Archive& a) {
+        a(size_);
+        for (int i = 0; i < size_; ++i) a(vertices_[size_t(i)]);
+    }
 
 private:
     int size_;

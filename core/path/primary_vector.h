@@ -42,6 +42,13 @@ public:
         blocks_[int(s)][size_[int(s)]++] = block;
     }
 
+    template <class Archive>
+    void archive(Archive& a) {
+        a(size_);
+        for (int s = 0; s < kStreams; ++s)
+            for (int i = 0; i < size_[size_t(s)]; ++i) a(blocks_[size_t(s)][size_t(i)]);
+    }
+
 private:
     std::array<int, kStreams> size_;
     std::array<std::array<Block, kMaxVertices + 1>, kStreams> blocks_;

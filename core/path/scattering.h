@@ -18,6 +18,10 @@ struct Scattering {
     Scattering() {}  // left open: arrays of them are made often
     Scattering(const Spectrum& value, double toCamera, double toLight) : f(value), pdfToCamera(toCamera), pdfToLight(toLight) {}
     static Scattering none() { return {Spectrum(0.0), 0, 0}; }
+    template <class Archive>
+    void archive(Archive& a) {
+        a(f, pdfToCamera, pdfToLight);
+    }
     double pdf(From walk) const { return walk == From::Light ? pdfToCamera : pdfToLight; }
     double reversePdf(From walk) const { return walk == From::Light ? pdfToLight : pdfToCamera; }
 };

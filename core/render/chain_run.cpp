@@ -29,6 +29,13 @@ double secondsSince(Clock::time_point start) { return std::chrono::duration<doub
 }  // namespace
 
 struct ChainRun::ChainSlot {
+    template <class Archive>
+    void archive(Archive& a) {
+        uint64_t finished = steps;
+        a(chain, trace, finished);
+        steps = finished;
+    }
+
     Chain chain;
     ChainTrace trace;
     std::atomic<uint64_t> steps = 0;  ///< finished; a worker that is ahead waits for them
@@ -106,6 +113,24 @@ struct ChainRun::Worker : StepObserver {
         return label;
     }
 
+    void take(Worker& other) {
+        film.take(other.film);
+        for (size_t i = 0; i < statistics.size(); ++i) {
+            statistics[i].merge(other.statistics[i]);
+            other.statistics[i] = {};
+        }
+        for (size_t i = 0; i < featureEnergy.size(); ++i) {
+            featureEnergy[i].add(other.featureEnergy[i]);
+            other.featureEnergy[i] = {};
+        }
+        jumps += std::exchange(other.jumps, 0);
+        nullSteps += std::exchange(other.nullSteps, 0);
+    }
+    template <class Archive>
+    void archive(Archive& a) {
+        a(film, statistics, featureEnergy, jumps, nullSteps);
+    }
+
     const ChainRun& run;
     std::unique_ptr<Target> target;
     Kernel kernel;
@@ -129,36 +154,43 @@ ChainRun::ChainRun(const RunContext& context, const ChainParameters& parameters,
       mix_(std::move(mix)),
       deposit_(deposit),
       pilotNumbers_(context.key, kPilotStream),
-      bootstrapNumbers_(context.key, kBootstrapStream) {
+      bootstrapNumbers_(context.key, kBootstrapStream),
+      pilotGoal_(kFirstPilot),
+      bootstrapGoal_(uint64_t(parameters.bootstrap)) {
     for (int i = 0; i < context.workers; ++i) workers_.push_back(std::make_unique<Worker>(*this, makeTarget()));
 }
 
 ChainRun::~ChainRun() = default;
 
-void ChainRun::prepare(const StopFunction& stop) {
-    std::vector<double> pilot;
-    uint64_t count = uint64_t(parameters_.bootstrap);
-    if (count == 0) count = planBootstrap(stop, pilot);
-    if (deposit_ == Deposit::Kelemen) {
-        // As many samples as a repetition takes, which is told the size of the bootstrap and needs no plan.
-        const uint64_t first = std::min(kPilot, count);
-        weigh(pilotNumbers_, first, stop, pilot);
-        pilotNormalization_ = WeightMoments(std::span(pilot).first(std::min<size_t>(first, pilot.size()))).mean;
+bool ChainRun::prepare(const StopFunction& stop) {
+    if (bootstrapGoal_ == 0) {
+        if (!growPilot(stop)) return false;
+        bootstrapGoal_ = planBootstrap();
     }
-    pilotSamples_ = pilot.size();
-    std::vector<double> weights;
-    weigh(bootstrapNumbers_, count, stop, weights);
-    bootstrap_ = WeightMoments(weights);
-    if (bootstrap_.mean > 0) return seedChains(weights);
-    if (weights.size() == count)  // and not stopped early
-        fail(ExitCode::InvalidConfig, "none of {} bidirectional samples carried light to the camera: is the camera inside a wall, or the light shut off?",
-             weights.size());
+    if (deposit_ == Deposit::Kelemen && !weigh(pilotNumbers_, std::min(kPilot, bootstrapGoal_), stop, pilot_)) return false;
+    if (!weigh(bootstrapNumbers_, bootstrapGoal_, stop, weights_)) return false;
+    settle();
+    return true;
 }
 
-/// Adds weights of bidirectional samples up to the `last`, or of as many as were made until the stop.
-void ChainRun::weigh(const BootstrapNumbers& numbers, uint64_t last, const StopFunction& stop, std::vector<double>& weights) {
+void ChainRun::settle() {
+    // As many samples as a repetition takes, which is told the size of the bootstrap and needs no plan.
+    if (deposit_ == Deposit::Kelemen)
+        pilotNormalization_ = WeightMoments(std::span(pilot_).first(std::min({size_t(kPilot), weights_.size(), pilot_.size()}))).mean;
+    pilotSamples_ = pilot_.size();
+    bootstrap_ = WeightMoments(weights_);
+    if (bootstrap_.mean > 0)
+        seedChains();
+    else if (weights_.size() == bootstrapGoal_)  // and not stopped early
+        fail(ExitCode::InvalidConfig, "none of {} bidirectional samples carried light to the camera: is the camera inside a wall, or the light shut off?",
+             weights_.size());
+    pilot_ = weights_ = {};
+}
+
+/// Adds weights of bidirectional samples up to the `last`; false where they were stopped before.
+bool ChainRun::weigh(const BootstrapNumbers& numbers, uint64_t last, const StopFunction& stop, std::vector<double>& weights) {
     const uint64_t first = weights.size();
-    if (first >= last) return;
+    if (first >= last) return true;
     weights.resize(last);
     std::atomic<uint64_t> notFinite = 0;
     const uint64_t end = forEachChunk(context_.workers, first, last, 256, stop, [&](int worker, uint64_t from, uint64_t to) {
@@ -170,6 +202,7 @@ void ChainRun::weigh(const BootstrapNumbers& numbers, uint64_t last, const StopF
     });
     weights.resize(end);
     bootstrapNotFinite_ += notFinite;
+    return end == last;
 }
 
 /// Of the limit that is used up most; `units`: mutations that cost as much.
@@ -179,21 +212,25 @@ double ChainRun::fractionOfBudget(const Cost& cost, double units) const {
                      fraction(units, context_.expectedUnits)});
 }
 
-/// Pilot samples and a few steps of trial chains tell how samples scatter and what samples and mutations cost.
-uint64_t ChainRun::planBootstrap(const StopFunction& stop, std::vector<double>& pilot) {
-    const auto start = Clock::now();
-    double seconds = 0;
-    for (uint64_t count = kFirstPilot;; count *= 2) {
-        weigh(pilotNumbers_, count, stop, pilot);
-        seconds = secondsSince(start);
-        const auto hits = uint64_t(std::count_if(pilot.begin(), pilot.end(), [](double w) { return w > 0; }));
-        const bool stopped = pilot.size() < count, enough = count >= kPilot && hits >= kPilotHits;
-        if (stopped || enough || fractionOfBudget({seconds, double(rays())}, double(count)) > kPilotShare) break;
+/// Until there are enough, or the pilot has had its share of the budget; false where it was stopped before.
+bool ChainRun::growPilot(const StopFunction& stop) {
+    for (;; pilotGoal_ *= 2) {
+        const auto start = Clock::now();
+        const bool complete = weigh(pilotNumbers_, pilotGoal_, stop, pilot_);
+        pilotSeconds_ += secondsSince(start);
+        if (!complete) return false;
+        const auto hits = uint64_t(std::count_if(pilot_.begin(), pilot_.end(), [](double w) { return w > 0; }));
+        if (pilotGoal_ >= kPilot && hits >= kPilotHits) return true;
+        if (fractionOfBudget({pilotSeconds_, double(rays())}, double(pilotGoal_)) > kPilotShare) return true;
     }
-    if (pilot.empty()) return uint64_t(SeedingPlan::kFewest);  // no time was left
-    const Cost sample{seconds / double(pilot.size()), double(rays()) / double(pilot.size())};
-    const WeightMoments moments(pilot);
-    const Cost mutation = moments.mean > 0 ? tryMutations(pilot) : sample;
+}
+
+/// Pilot samples and a few steps of trial chains tell how samples scatter and what samples and mutations cost.
+uint64_t ChainRun::planBootstrap() {
+    const double count = double(pilot_.size());
+    const Cost sample{pilotSeconds_ / count, double(rays()) / count};
+    const WeightMoments moments(pilot_);
+    const Cost mutation = moments.mean > 0 ? tryMutations() : sample;
     const double mutationsPerSample = mutation.rays > 0 ? sample.rays / mutation.rays : 1;
     const double square = context_.scene.filter.squareIntegral();
     plan_.emplace(moments, SeedingTask{.sampleCost = fractionOfBudget(sample, mutationsPerSample),
@@ -204,12 +241,12 @@ uint64_t ChainRun::planBootstrap(const StopFunction& stop, std::vector<double>& 
 }
 
 /// Mean cost of a mutation, from short chains that start at pilot samples and leave nothing in the image.
-ChainRun::Cost ChainRun::tryMutations(std::span<const double> pilot) {
+ChainRun::Cost ChainRun::tryMutations() {
     struct Blind : StepObserver {
         void observe(const Chain&, const Proposal&, const StepInfo&) override {}
     } blind;
     Random random(context_.key, kTrialStartStream, 0);
-    const std::vector<Start> starts = drawStarts(pilot, kTrialChains, random);
+    const std::vector<Start> starts = drawStarts(pilot_, kTrialChains, random);
     std::vector<Chain> chains(kTrialChains);
     auto forEachChain = [&](const auto& work) {
         forEachChunk(context_.workers, 0, kTrialChains, 1, neverStop,
@@ -238,9 +275,9 @@ bool ChainRun::startChain(Worker& w, const BootstrapNumbers& numbers, const Star
     return true;
 }
 
-void ChainRun::seedChains(std::span<const double> weights) {
+void ChainRun::seedChains() {
     Random random(context_.key, kResamplingStream, 0);
-    const std::vector<Start> starts = drawStarts(weights, size_t(parameters_.chains), random);
+    const std::vector<Start> starts = drawStarts(weights_, size_t(parameters_.chains), random);
     chains_.resize(starts.size());
     std::atomic<uint64_t> lost = 0;
     forEachChunk(context_.workers, 0, starts.size(), 16, neverStop, [&](int worker, uint64_t begin, uint64_t end) {
@@ -296,40 +333,50 @@ void ChainRun::timedStep(Worker& w, Chain& chain) {
     if (w.last >= 0) w.statistics[size_t(w.last)].seconds += secondsSince(start) * double(kTimedEvery);
 }
 
-Image ChainRun::develop(uint64_t units) const {
-    Film film = workers_[0]->film;
-    for (size_t i = 1; i < workers_.size(); ++i) film.merge(workers_[i]->film);
-    return film.develop(context_.scene.sensor->windowArea() * bootstrap_.mean / double(units));
+/// The first worker, which then has what all have made.
+ChainRun::Worker& ChainRun::gathered() {
+    Worker& first = *workers_[0];
+    for (size_t i = 1; i < workers_.size(); ++i) first.take(*workers_[i]);
+    return first;
+}
+
+Image ChainRun::develop(uint64_t units) {
+    return gathered().film.develop(context_.scene.sensor->windowArea() * bootstrap_.mean / double(units));
 }
 
 uint64_t ChainRun::rays() const {
-    uint64_t rays = 0;
+    uint64_t rays = raysBefore_;
     for (const auto& w : workers_) rays += w->target->tracing().rays();
     return rays;
 }
 
-void ChainRun::report(uint64_t units, RenderStatistics& s) const {
+template <class Archive>
+void ChainRun::archive(Archive& a) {
+    uint64_t traced = rays(), chains = chains_.size();
+    a(traced, pilot_, weights_, pilotGoal_, bootstrapGoal_, pilotSeconds_, plan_, bootstrap_, pilotNormalization_, pilotSamples_,
+      bootstrapNotFinite_, seedsLost_, gathered(), chains);
+    if (traced > rays()) raysBefore_ = traced;
+    while (chains_.size() < chains) chains_.push_back(std::make_unique<ChainSlot>());
+    for (auto& slot : chains_) a(*slot);
+}
+
+void ChainRun::report(uint64_t units, RenderStatistics& s) {
     s.rays = rays();
     s.samples = pilotSamples_ + bootstrap_.samples;
     s.mutations = units;
     s.chains = chains_.size();
     s.normalization = bootstrap_.mean;
     s.normalizationStandardError = bootstrap_.standardError;
-    std::vector<FixedSum> energy(context_.scene.features.names.size());
-    uint64_t nullSteps = 0;
-    for (const auto& w : workers_) {
-        for (size_t i = 0; i < mix_.size(); ++i) {
-            s.mutationStatistics[mix_[i].name].merge(w->statistics[i]);
-            const uint64_t bad = w->statistics[i].rejected[size_t(Reject::NotFinite)];
-            if (bad > 0) s.nonFinite["mutation " + mix_[i].name] += bad;
-        }
-        if (w->film.nonFinite() > 0) s.nonFinite["deposit"] += w->film.nonFinite();
-        for (size_t i = 0; i < energy.size(); ++i) energy[i].add(w->featureEnergy[i]);
-        s.featureJumps += w->jumps;
-        nullSteps += w->nullSteps;
+    const Worker& all = gathered();
+    for (size_t i = 0; i < mix_.size(); ++i) {
+        s.mutationStatistics[mix_[i].name] = all.statistics[i];
+        const uint64_t bad = all.statistics[i].rejected[size_t(Reject::NotFinite)];
+        if (bad > 0) s.nonFinite["mutation " + mix_[i].name] += bad;
     }
+    if (all.film.nonFinite() > 0) s.nonFinite["deposit"] += all.film.nonFinite();
+    s.featureJumps = all.jumps;
     if (bootstrapNotFinite_ > 0) s.nonFinite["bootstrap"] = bootstrapNotFinite_;
-    for (const FixedSum& e : energy) s.featureEnergy.push_back(units > 0 ? e.value() * bootstrap_.mean / double(units) : 0);
+    for (const FixedSum& e : all.featureEnergy) s.featureEnergy.push_back(units > 0 ? e.value() * bootstrap_.mean / double(units) : 0);
     for (const auto& slot : chains_) s.traces.push_back(slot->trace);
     s.diagnostics["pilot_samples"] = pilotSamples_;
     s.diagnostics["bootstrap_samples"] = bootstrap_.samples;
@@ -343,7 +390,7 @@ void ChainRun::report(uint64_t units, RenderStatistics& s) const {
                                          {"samples_for_smallest_share", plan_->samplesForSmallestShare},
                                          {"samples_for_largest_share", plan_->samplesForLargestShare},
                                          {"samples", plan_->samples}};
-    s.diagnostics["null_steps"] = nullSteps;
+    s.diagnostics["null_steps"] = all.nullSteps;
     s.diagnostics["seeds_lost_to_rounding"] = seedsLost_;
 }
 

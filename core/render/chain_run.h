@@ -41,13 +41,16 @@ public:
              const TargetMaker& makeTarget);
     ~ChainRun() override;
 
-    void prepare(const StopFunction& stop) override;
+    bool prepare(const StopFunction& stop) override;
+    void settle() override;
     /// Steps a chain takes before the next one's turn: long enough to keep its state in the cache.
     uint64_t chunk() const override { return 64; }
     void work(int worker, uint64_t begin, uint64_t end) override;
-    Image develop(uint64_t units) const override;
+    Image develop(uint64_t units) override;
     uint64_t rays() const override;
-    void report(uint64_t units, RenderStatistics& statistics) const override;
+    void report(uint64_t units, RenderStatistics& statistics) override;
+    void save(ByteWriter& state) override { archive(state); }
+    void restore(ByteReader& state) override { archive(state); }
 
 private:
     struct Worker;
@@ -57,12 +60,16 @@ private:
         double seconds, rays;
     };
 
-    void weigh(const BootstrapNumbers& numbers, uint64_t last, const StopFunction& stop, std::vector<double>& weights);
-    uint64_t planBootstrap(const StopFunction& stop, std::vector<double>& pilot);
+    Worker& gathered();
+    template <class Archive>
+    void archive(Archive& a);
+    bool weigh(const BootstrapNumbers& numbers, uint64_t last, const StopFunction& stop, std::vector<double>& weights);
+    bool growPilot(const StopFunction& stop);
+    uint64_t planBootstrap();
     double fractionOfBudget(const Cost& cost, double units) const;
-    Cost tryMutations(std::span<const double> pilot);
+    Cost tryMutations();
     bool startChain(Worker& worker, const BootstrapNumbers& numbers, const Start& start, Chain& chain);
-    void seedChains(std::span<const double> weights);
+    void seedChains();
     void step(Worker& worker, Chain& chain, StepObserver& observer);
     void timedStep(Worker& worker, Chain& chain);
 
@@ -74,10 +81,16 @@ private:
     std::vector<std::unique_ptr<Worker>> workers_;
     std::vector<std::unique_ptr<ChainSlot>> chains_;
     BootstrapNumbers pilotNumbers_, bootstrapNumbers_;
+    // Of the seeding while it lasts:
+    std::vector<double> pilot_, weights_;
+    uint64_t pilotGoal_, bootstrapGoal_;  ///< samples to be made; the bootstrap's is 0 until it is known
+    double pilotSeconds_ = 0;
+    // What remains of it:
     std::optional<SeedingPlan> plan_;  ///< none where the size of the bootstrap is given
     WeightMoments bootstrap_;
     double pilotNormalization_ = 0;  ///< b from samples that seed nothing
     uint64_t pilotSamples_ = 0, bootstrapNotFinite_ = 0, seedsLost_ = 0;
+    uint64_t raysBefore_ = 0;  ///< traced before the run was restored
     std::atomic<bool> failed_ = false;  ///< a step threw; workers that wait for its chain give up
 };
 

@@ -1,5 +1,6 @@
 #include "core/render/driver.h"
 
+#include "core/base/error.h"
 #include "core/render/parallel.h"
 
 #include <chrono>
@@ -37,68 +38,133 @@ public:
     }
 
     RenderResult execute() {
-        RenderResult result;
-        start_ = Clock::now();
-        const double cpu = cpuSeconds();
-        run_->prepare(stopAt(options_.budget.seconds.value_or(std::numeric_limits<double>::infinity()), seeded_));
-        const double seeding = seconds();
-        const uint64_t seedingRays = run_->rays();
-        for (int n = options_.snapshots; n >= 0 && !stopped_; --n) {
+        if (options_.checkpoint && options_.checkpoint->resume && std::filesystem::exists(options_.checkpoint->file)) restore();
+        plannedCheckpoint_ = workSeconds() + interval();
+        prepare();
+        while (!stopped_) {
+            const int n = options_.snapshots - int(result_.snapshots.size());
             const double fraction = std::ldexp(1.0, -n);
             advance(fraction);
-            if (n > 0 && !stopped_) {
-                RenderStatistics s;
-                const double time = seconds();
-                run_->report(units_, s);
-                result.snapshots.push_back({fraction, time - developing_, s.rays, s.samples, s.mutations, run_->develop(units_)});
-                developing_ += seconds() - time;
-            }
+            if (n == 0 || stopped_) break;
+            const double time = workSeconds();
+            RenderStatistics s;
+            run_->report(units_, s);
+            result_.snapshots.push_back({fraction, time, s.rays, s.samples, s.mutations, run_->develop(units_)});
+            notWork_ += workSeconds() - time;
         }
-        result.wallSeconds = seconds() - developing_;
-        result.cpuSeconds = cpuSeconds() - cpu;
-        result.interrupted = stopped_;
-        result.units = units_;
-        result.image = run_->develop(units_);
-        run_->report(units_, result.statistics);
-        result.statistics.biasLedger = substitutions_;
-        result.statistics.biasLedger.insert(result.statistics.biasLedger.end(), run_->biasLedger().begin(), run_->biasLedger().end());
-        result.statistics.seedingSeconds = seeding;
-        result.statistics.seedingRays = seedingRays;
-        return result;
+        result_.wallSeconds = workSeconds();
+        result_.cpuSeconds = cpuSeconds() - cpuStart_;
+        result_.interrupted = stopped_;
+        result_.units = units_;
+        if (stopped_ && options_.checkpoint) result_.lost = keepState();
+        result_.image = run_->develop(units_);
+        run_->report(units_, result_.statistics);
+        result_.statistics.biasLedger = substitutions_;
+        result_.statistics.biasLedger.insert(result_.statistics.biasLedger.end(), run_->biasLedger().begin(), run_->biasLedger().end());
+        result_.statistics.seedingSeconds = seedingSeconds_;
+        result_.statistics.seedingRays = seedingRays_;
+        return std::move(result_);
     }
 
 private:
-    double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+    /// Of the render itself: without snapshots and checkpoints, with earlier sessions.
+    double workSeconds() const { return std::chrono::duration<double>(Clock::now() - start_).count() - notWork_; }
+    double timeLimit() const { return options_.budget.seconds.value_or(std::numeric_limits<double>::infinity()); }
 
-    /// Goes on to a fraction of every limit. Taking the snapshots is not the renderer's work: that time is not counted.
+    void prepare() {
+        if (prepared_) return;
+        while (!run_->prepare(stopAt(timeLimit(), seeded_))) {
+            if (stopped_) return;
+            if (workSeconds() >= timeLimit()) {
+                run_->settle();
+                break;
+            }
+            checkpoint();
+        }
+        prepared_ = true;
+        seedingSeconds_ = workSeconds();
+        seedingRays_ = run_->rays();
+    }
+
+    /// Goes on to a fraction of every limit.
     void advance(double fraction) {
         const Budget& b = options_.budget;
         uint64_t limit = unitLimit_;
         if (limit != kUnlimited) limit = fraction < 1 ? uint64_t(std::llround(double(limit) * fraction)) : limit;
-        const double deadline = b.seconds ? *b.seconds * fraction + developing_ : std::numeric_limits<double>::infinity();
+        const double deadline = timeLimit() * fraction;
         if (!b.rays) return doUnits(limit, deadline);
-        while (units_ < limit && seconds() < deadline && double(run_->rays()) < *b.rays * fraction && !stopped_)
-            doUnits(std::min(limit, units_ + kChunksPerRayRound * run_->chunk()), deadline);
+        const uint64_t round = kChunksPerRayRound * run_->chunk();
+        while (units_ < limit && workSeconds() < deadline && double(run_->rays()) < *b.rays * fraction && !stopped_)
+            doUnits(std::min(limit, (units_ / round + 1) * round), deadline);
     }
 
-    /// Hands out chunks in order until the limit or the deadline; what is done afterwards is exactly [0, units_).
+    /// Hands out chunks in order until the limit or the deadline, with pauses for checkpoints; what is done afterwards is
+    /// exactly [0, units_).
     void doUnits(uint64_t limit, double deadline) {
-        std::atomic<uint64_t> done = units_;
-        units_ = forEachChunk(options_.threads, units_, limit, run_->chunk(), stopAt(deadline, done),
-                              [&](int worker, uint64_t begin, uint64_t end) {
-                                  run_->work(worker, begin, end);
-                                  done.fetch_add(end - begin, std::memory_order_relaxed);
-                              });
+        for (;;) {
+            std::atomic<uint64_t> done = units_;
+            units_ = forEachChunk(options_.threads, units_, limit, run_->chunk(), stopAt(deadline, done),
+                                  [&](int worker, uint64_t begin, uint64_t end) {
+                                      run_->work(worker, begin, end);
+                                      done.fetch_add(end - begin, std::memory_order_relaxed);
+                                  });
+            if (units_ >= limit || stopped_ || workSeconds() >= deadline) return;
+            checkpoint();
+        }
     }
 
-    /// Stops at a signal and at the deadline; reports progress on the way. `done` must outlive it.
+    /// Stops at a signal, at the deadline and when a checkpoint is due; reports progress on the way. `done` must outlive it.
     StopFunction stopAt(double deadline, const std::atomic<uint64_t>& done) {
         return [this, deadline, &done](int worker) {
             if (options_.interrupt && options_.interrupt->load(std::memory_order_relaxed)) stopped_ = true;
-            const double now = seconds();
+            const double now = workSeconds();
             report(worker, now, done.load(std::memory_order_relaxed));
-            return stopped_ || now >= deadline;
+            return stopped_ || now >= deadline || now >= plannedCheckpoint_;
         };
+    }
+
+    double interval() const { return options_.checkpoint ? options_.checkpoint->interval : std::numeric_limits<double>::infinity(); }
+
+    /// Between rounds of work.
+    void checkpoint() {
+        constexpr double kLargestShare = 0.01;
+        const double before = result_.checkpointSeconds;
+        if (const std::string trouble = keepState(); !trouble.empty()) options_.checkpoint->warn(trouble);
+        plannedCheckpoint_ = workSeconds() + std::max(interval(), (result_.checkpointSeconds - before) / kLargestShare);
+    }
+
+    /// What went wrong, or nothing.
+    std::string keepState() {
+        const double time = workSeconds();
+        std::string trouble;
+        try {
+            ByteWriter state;
+            archive(state);
+            run_->save(state);
+            writeCheckpoint(*options_.checkpoint, state.text);
+        } catch (const Error& error) {
+            trouble = error.what();
+        }
+        const double spent = workSeconds() - time;
+        result_.checkpointSeconds += spent;
+        notWork_ += spent;
+        return trouble;
+    }
+
+    void restore() {
+        const std::string state = readCheckpoint(*options_.checkpoint);
+        ByteReader reader(state);
+        archive(reader);
+        run_->restore(reader);
+        ++result_.sessions;
+    }
+
+    template <class Archive>
+    void archive(Archive& a) {
+        double wall = workSeconds(), cpu = cpuSeconds() - cpuStart_;
+        a(prepared_, units_, wall, cpu, seedingSeconds_, seedingRays_, result_.snapshots, result_.sessions, result_.checkpointSeconds);
+        notWork_ += workSeconds() - wall;
+        cpuStart_ = cpuSeconds() - cpu;
     }
 
     void report(int worker, double now, uint64_t done) {
@@ -106,7 +172,7 @@ private:
         lastReport_ = now;
         const Budget& b = options_.budget;
         double fraction = 0;
-        if (b.seconds) fraction = std::max(fraction, (now - developing_) / *b.seconds);
+        if (b.seconds) fraction = std::max(fraction, now / *b.seconds);
         if (unitLimit_ != kUnlimited) fraction = std::max(fraction, double(done) / double(unitLimit_));
         options_.progress(std::min(1.0, fraction));
     }
@@ -116,8 +182,14 @@ private:
     double pixels_;
     std::unique_ptr<SamplerRun> run_;
     uint64_t unitLimit_ = kUnlimited, units_ = 0;
-    Clock::time_point start_;
-    double developing_ = 0, lastReport_ = 0;
+    bool prepared_ = false;
+    RenderResult result_;
+    const Clock::time_point start_ = Clock::now();
+    double cpuStart_ = cpuSeconds();
+    double notWork_ = 0;  ///< seconds since start_ that are not the render's; negative where earlier sessions worked longer
+    double seedingSeconds_ = 0;
+    uint64_t seedingRays_ = 0;
+    double plannedCheckpoint_ = 0, lastReport_ = 0;
     std::atomic<bool> stopped_ = false;
     const std::atomic<uint64_t> seeded_ = 0;  ///< units done while seeding: none
 };

@@ -1,6 +1,7 @@
 #pragma once
 // Runs a sampler until its budget is spent.
 
+#include "core/render/checkpoint.h"
 #include "core/render/sampler.h"
 
 #include <atomic>
@@ -26,6 +27,9 @@ struct RenderOptions {
     std::function<void(double)> progress;
     /// Set from a signal handler: the run ends early, with what it has.
     const std::atomic<bool>* interrupt = nullptr;
+    /// Keeps the state in a file while it runs and where it is interrupted; the caller removes the file of a run that is
+    /// finished. None: the state is lost with the process.
+    std::optional<CheckpointPlan> checkpoint;
 };
 
 struct RenderResult {
@@ -33,11 +37,14 @@ struct RenderResult {
     RenderStatistics statistics;
     std::vector<Snapshot> snapshots;
     uint64_t units = 0;       ///< samples or mutations done: the work budget that repeats this image
-    double wallSeconds = 0, cpuSeconds = 0;
+    double wallSeconds = 0, cpuSeconds = 0;  ///< of all sessions, without checkpoints
     bool interrupted = false;
+    int sessions = 1;              ///< 1 + how often it was resumed
+    double checkpointSeconds = 0;  ///< spent on keeping the state, in all sessions
+    std::string lost;              ///< why the state could not be kept when it was interrupted; empty: it was
 };
 
-/// Errors: InvalidConfig if the budget does not fit the sampler or no path carries light.
+/// Errors: InvalidConfig if the budget does not fit the sampler, no path carries light, or the checkpoint is of another run.
 RenderResult render(const Scene& scene, const Sampler& sampler, const RenderOptions& options);
 
 }  // namespace ulam

@@ -75,6 +75,20 @@ struct IndependentRun::Worker : ContributionSink {
         if (energy < FixedSum::kLargestTerm) featureEnergy[feature].add(energy);
     }
 
+    void take(Worker& other) {
+        film.take(other.film);
+        if (techniques) techniques->take(*other.techniques);
+        for (size_t i = 0; i < featureEnergy.size(); ++i) {
+            featureEnergy[i].add(other.featureEnergy[i]);
+            other.featureEnergy[i] = {};
+        }
+    }
+    template <class Archive>
+    void archive(Archive& a) {
+        a(film, featureEnergy);
+        if (techniques) a(*techniques);
+    }
+
     std::unique_ptr<SampleSource> source;
     PrimaryVector u;
     Film film;
@@ -113,35 +127,39 @@ void IndependentRun::work(int worker, uint64_t begin, uint64_t end) {
     w.splats.flush();
 }
 
-Image IndependentRun::develop(uint64_t units) const {
-    Film film = workers_[0]->film;
-    for (size_t i = 1; i < workers_.size(); ++i) film.merge(workers_[i]->film);
-    return film.develop(scene_.sensor->windowArea() / double(units));
+/// The first worker, which then has what all have made.
+IndependentRun::Worker& IndependentRun::gathered() {
+    Worker& first = *workers_[0];
+    for (size_t i = 1; i < workers_.size(); ++i) first.take(*workers_[i]);
+    return first;
+}
+
+Image IndependentRun::develop(uint64_t units) {
+    return gathered().film.develop(scene_.sensor->windowArea() / double(units));
 }
 
 uint64_t IndependentRun::rays() const {
-    uint64_t rays = 0;
+    uint64_t rays = raysBefore_;
     for (const auto& w : workers_) rays += w->source->rays();
     return rays;
 }
 
-void IndependentRun::report(uint64_t units, RenderStatistics& statistics) const {
+void IndependentRun::report(uint64_t units, RenderStatistics& statistics) {
     statistics.samples = units;
     statistics.rays = rays();
-    std::vector<FixedSum> energy(scene_.features.names.size());
-    for (const auto& w : workers_) {
-        if (w->film.nonFinite() > 0) statistics.nonFinite["contribution"] += w->film.nonFinite();
-        for (size_t i = 0; i < energy.size(); ++i) energy[i].add(w->featureEnergy[i]);
-    }
-    for (const FixedSum& e : energy) statistics.featureEnergy.push_back(units > 0 ? e.value() / double(units) : 0);
-    if (!workers_[0]->techniques) return;
-    Film film = workers_[0]->film;
-    TechniqueFilms techniques = *workers_[0]->techniques;
-    for (size_t i = 1; i < workers_.size(); ++i) {
-        film.merge(workers_[i]->film);
-        techniques.merge(*workers_[i]->techniques);
-    }
-    techniques.develop(film, scene_.sensor->windowArea() / double(units), statistics.extraImages);
+    const Worker& all = gathered();
+    if (all.film.nonFinite() > 0) statistics.nonFinite["contribution"] += all.film.nonFinite();
+    for (const FixedSum& e : all.featureEnergy) statistics.featureEnergy.push_back(units > 0 ? e.value() / double(units) : 0);
+    if (all.techniques) all.techniques->develop(all.film, scene_.sensor->windowArea() / double(units), statistics.extraImages);
+}
+
+void IndependentRun::save(ByteWriter& state) {
+    uint64_t traced = rays();
+    state(traced, gathered());
+}
+
+void IndependentRun::restore(ByteReader& state) {
+    state(raysBefore_, gathered());
 }
 
 }  // namespace ulam

@@ -57,18 +57,23 @@ public:
 
     uint64_t chunk() const override { return 256; }
     void work(int worker, uint64_t begin, uint64_t end) override;
-    Image develop(uint64_t units) const override;
+    Image develop(uint64_t units) override;
     uint64_t rays() const override;
-    void report(uint64_t units, RenderStatistics& statistics) const override;
+    void report(uint64_t units, RenderStatistics& statistics) override;
+    void save(ByteWriter& state) override;
+    void restore(ByteReader& state) override;
 
 private:
     struct Worker;
+
+    Worker& gathered();
 
     const Scene& scene_;
     RandomKey key_;
     PixelNumbers numbers_;
     PixelOrder order_;
     std::vector<std::unique_ptr<Worker>> workers_;
+    uint64_t raysBefore_ = 0;  ///< traced before the run was restored
 };
 
 }  // namespace ulam

@@ -2,6 +2,7 @@
 // The interface of every algorithm that turns a scene and a budget into an image. A sampler file describes one unit of
 // its work; the driver (driver.h) has the threads, budgets, snapshots and progress.
 
+#include "core/base/archive.h"
 #include "core/config/registry.h"
 #include "core/path/walk.h"
 #include "core/render/parallel.h"
@@ -29,18 +30,24 @@ class SamplerRun {
 public:
     virtual ~SamplerRun() = default;
 
-    /// Before the first unit: seeding, normalisation. May use context.workers threads; what it has when `stop` says so is
-    /// what it goes on with.
-    virtual void prepare(const StopFunction& /*stop*/) {}
+    /// Before the first unit: seeding, normalisation. May use context.workers threads. False where `stop` said so before
+    /// it was done: it is called again to go on, or `settle` has it make do with what there is.
+    virtual bool prepare(const StopFunction& /*stop*/) { return true; }
+    virtual void settle() {}
     /// Units handed out at a time, and the alignment of their ranges.
     virtual uint64_t chunk() const = 0;
     /// Does units [begin, end) of one chunk.
     virtual void work(int worker, uint64_t begin, uint64_t end) = 0;
-    /// The image after `units` units.
-    virtual Image develop(uint64_t units) const = 0;
+    /// The image after `units` units; between rounds of work.
+    virtual Image develop(uint64_t units) = 0;
     /// Rays traced so far by all workers; called between rounds of work.
     virtual uint64_t rays() const = 0;
-    virtual void report(uint64_t units, RenderStatistics& statistics) const = 0;
+    virtual void report(uint64_t units, RenderStatistics& statistics) = 0;
+
+    /// Everything that was made so far, between rounds of work or of preparation; and back, into a run that was just
+    /// started with the same context, but for the number of workers.
+    virtual void save(ByteWriter& state) = 0;
+    virtual void restore(ByteReader& state) = 0;
 
     /// A bias that the sampler knows of, for the result; nothing: none.
     void noteBias(const std::optional<std::string>& bias) {

@@ -52,6 +52,11 @@ struct WeightMoments {
     double effective = 0;      ///< number of equal weights that scatter as much: (Σw)² / Σw² (Kish 1965)
     /// Variance of the mean over what it were if samples were independent: below 1 where their evenness helps.
     double stratification = 1;
+
+    template <class Archive>
+    void archive(Archive& a) {
+        a(samples, mean, standardError, effective, stratification);
+    }
 };
 
 /// What seeding works with, costs as fractions of the budget.
@@ -73,6 +78,7 @@ struct SeedingTask {
 /// *Share.* At least kSmallestShare of the budget, since large regions, which average over pixels, see b's error alone; at
 /// most kLargestShare, so that chains cost at least as much as their seeding.
 struct SeedingPlan {
+    SeedingPlan() = default;
     SeedingPlan(const WeightMoments& pilot, const SeedingTask& task);
 
     static constexpr double kScaleError = 0.1, kSmallestShare = 0.05, kLargestShare = 0.5;
@@ -81,6 +87,11 @@ struct SeedingPlan {
     double expectedError = 0;    ///< e
     double samplesForScale = 0, samplesForStarts = 0, samplesForSmallestShare = 0, samplesForLargestShare = 0;
     uint64_t samples = 0;
+
+    template <class Archive>
+    void archive(Archive& a) {
+        a(expectedError, samplesForScale, samplesForStarts, samplesForSmallestShare, samplesForLargestShare, samples);
+    }
 };
 
 /// Where a chain starts: at a sample, and within it at the part in which the running sum of π passes `choice` of it.

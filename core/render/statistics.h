@@ -37,6 +37,11 @@ struct Snapshot {
     double seconds;
     uint64_t rays, samples, mutations;
     Image image;
+
+    template <class Archive>
+    void archive(Archive& a) {
+        a(fraction, seconds, rays, samples, mutations, image);
+    }
 };
 
 }  // namespace ulam

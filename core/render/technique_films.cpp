@@ -17,10 +17,10 @@ void TechniqueFilms::add(const Contribution& c, int pixel) {
     }
 }
 
-void TechniqueFilms::merge(const TechniqueFilms& other) {
-    for (const auto& [technique, pair] : other.films_) {
+void TechniqueFilms::take(TechniqueFilms& other) {
+    for (auto& [technique, pair] : other.films_) {
         Pair& mine = films(technique);
-        for (size_t i = 0; i < 2; ++i) mine[i].merge(pair[i]);
+        for (size_t i = 0; i < 2; ++i) mine[i].take(pair[i]);
     }
 }
 

@@ -26,6 +26,14 @@ struct Vertex {
     Kind kind;
     Lobe lobe;            ///< how the path it belongs to scatters here
 
+    /// What is used of it.
+    template <class Archive>
+    void archive(Archive& a) {
+        a(kind, lobe, shape, position);
+        if (hasNormal()) a(normal);
+        if (onSurface()) a(shadingNormal, uv, primitive);
+    }
+
     bool onSurface() const { return kind == Kind::Surface; }
     bool hasNormal() const { return kind == Kind::Surface || kind == Kind::Lens; }
     bool atInfinity() const { return kind == Kind::Infinite || kind == Kind::Direction; }

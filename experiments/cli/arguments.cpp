@@ -37,7 +37,7 @@ template <class Interface>
 ArgumentDocument documentArgument(const std::string& argument) {
     if (argument.starts_with("{")) return {JsonDocument::fromText(argument, "command line"), fs::current_path()};
     const fs::path path = argument;
-    if (looksLikeFile(argument)) return {JsonDocument::fromFile(path), path.parent_path()};
+    if (looksLikeFile(argument)) return {JsonDocument::fromFile(path), path.parent_path(), path};
     std::vector<std::string> names;
     for (const auto* entry : Registry<Interface>::instance().entries()) names.push_back(entry->name);
     if (std::find(names.begin(), names.end(), argument) == names.end())
@@ -50,7 +50,7 @@ ArgumentDocument documentArgument(const std::string& argument) {
 ArgumentDocument sceneArgument(const std::string& argument, const SceneFileOptions& options) {
     const fs::path path = argument;
     if (!argument.starts_with("{") && (looksLikeFile(argument) || path.extension() == ".xml" || path.extension() == ".pbrt"))
-        return {readSceneDocument(path, options), path.parent_path()};
+        return {readSceneDocument(path, options), path.parent_path(), path};
     if (!options.definitions.empty() || options.lenient) fail(ExitCode::Usage, "-D and --lenient are for scenes in files of other renderers");
     return documentArgument<Generator>(argument);
 }

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@ namespace ulam {
 struct ArgumentDocument {
     JsonDocument document;
     std::filesystem::path folder;
+    std::optional<std::filesystem::path> file = {};  ///< none: JSON or a name on the command line
 };
 
 /// SCENE: a JSON, XML or pbrt file, a generator's name, or JSON itself.

@@ -82,7 +82,7 @@ void printScene(const SceneDescription& description, const SceneArguments& a) {
 void runScene(const SceneArguments& a) {
     if (a.info == !a.target.empty())
         fail(ExitCode::Usage, "expected ulam scene SCENE --info, or ulam scene SCENE --export FORMAT DIR");
-    auto [document, folder] = sceneArgument(a.scene, *a.xml);
+    auto [document, folder, file] = sceneArgument(a.scene, *a.xml);
     document.applyOverrides(a.assignments);
     const SceneDescription description = SceneDescription::fromNode(document.root(), folder);
     if (a.info)

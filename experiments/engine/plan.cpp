@@ -6,6 +6,7 @@
 #include "core/base/error.h"
 #include "core/base/sha256.h"
 #include "experiments/engine/provenance.h"
+#include "experiments/engine/result.h"
 #include "experiments/statistics/comparison.h"
 
 namespace ulam {
@@ -67,6 +68,8 @@ private:
         auto planned = std::make_shared<PlannedScene>();
         planned->name = scene.name;
         planned->film = e.film;
+        planned->source = sceneSource(scene.node.isString() ? Json(fs::absolute(e.folder / scene.node.string()).string()) : scene.node.json(),
+                                      description.folder(), e.film);
         planned->description = scene.node.isString() ? description.dictionary() : scene.node.json();
         if (description.generator()) {
             // Shares the description, which owns the generator.

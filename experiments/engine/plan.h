@@ -15,6 +15,7 @@ struct PlannedScene {
     std::string name;
     Json description;  ///< as written, a generator's defaults filled in
     Json film;
+    Json source;  ///< how to get it again: see sceneSource
     std::shared_ptr<const Generator> generator;  ///< null for an ordinary scene
     FilmSize filmSize;
     Scene scene;

@@ -73,6 +73,7 @@ bool renderReplicate(const Task& task, int replicate, const fs::path& taskFolder
     run.key = task.key(replicate);
     run.threads = threads;
     run.setupSeconds = task.scene->setupSeconds;
+    run.source = task.scene->source;
 
     RenderOptions options;
     options.budget = task.budget;
@@ -81,6 +82,13 @@ bool renderReplicate(const Task& task, int replicate, const fs::path& taskFolder
     options.snapshots = task.snapshots;
     options.progress = progress;
     options.interrupt = &interrupt;
+    const fs::path folder = replicateFolder(taskFolder, replicate);
+    options.checkpoint = CheckpointPlan{.file = folder / "checkpoint",
+                                        .identity = {{"task", task.hash()}, {"replicate", replicate}},
+                                        .resume = true};
+    makeFolder(folder);
+    std::error_code ignored;
+    if (!isCheckpointOf(*options.checkpoint)) fs::remove(options.checkpoint->file, ignored);
     const auto sampler = Registry<Sampler>::instance().create(JsonNode(task.parameters));
     const RenderResult result = render(task.scene->scene, *sampler, options);
     if (result.interrupted) return false;
@@ -88,7 +96,8 @@ bool renderReplicate(const Task& task, int replicate, const fs::path& taskFolder
     Json fields = resultJson(run, result, task.scene->scene.features);
     fields["budget"] = budgetJson(task.budget);
     fields["task_hash"] = task.hash();
-    writeRun(replicateFolder(taskFolder, replicate), run, result, fields);
+    writeRun(folder, run, result, fields);
+    fs::remove(options.checkpoint->file, ignored);
     return true;
 }
 

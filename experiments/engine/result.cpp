@@ -36,18 +36,23 @@ std::string snapshotFile(std::size_t index) {
     return fmt::format("snapshots/s{:02}.exr", index);
 }
 
-/// Sampler and budget that make the same image again, whatever ended the run.
+/// Scene, sampler and budget that make the same image again, whatever ended the run.
 Json repetition(const RunIdentity& run, const RenderResult& result) {
     Json sampler = run.parameters;
     // What a time budget allowed.
     if (sampler.contains("bootstrap")) sampler["bootstrap"] = result.statistics.diagnostics["bootstrap_samples"];
     const double pixels = double(result.image.width) * result.image.height;
-    return {{"sampler", sampler},
+    return {{"scene", run.source},
+            {"sampler", sampler},
             {"budget", result.statistics.chains > 0 ? Json{{"mutations", result.units}}
                                                     : Json{{"spp", double(result.units) / pixels}}}};
 }
 
 }  // namespace
+
+Json sceneSource(const Json& scene, const fs::path& folder, const Json& film) {
+    return {{"scene", scene}, {"folder", (fs::current_path() / folder).lexically_normal().string()}, {"film", film}};
+}
 
 Json resolveSampler(const JsonNode& sampler) {
     const JsonNode type = sampler.at("type");
@@ -88,6 +93,8 @@ Json resultJson(const RunIdentity& run, const RenderResult& result, const Featur
         {"replicate", run.replicate},
         {"random_key", {run.key.low, run.key.high}},
         {"threads", run.threads},
+        {"sessions", result.sessions},
+        {"checkpoint_seconds", result.checkpointSeconds},
         {"wall_seconds", result.wallSeconds},
         {"cpu_seconds", result.cpuSeconds},
         {"setup_seconds", run.setupSeconds},

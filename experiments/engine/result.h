@@ -21,7 +21,12 @@ struct RunIdentity {
     RandomKey key;
     int threads = 1;
     double setupSeconds = 0;  ///< loading the scene, building the acceleration structure
+    Json source;              ///< how to get the scene again: see sceneSource
 };
+
+/// {"scene": a dictionary or the absolute path of a file, "folder": where relative paths in it start from, "film": options
+/// above its own}; for a file of another renderer also "set", "definitions" and "lenient", as on the command line.
+Json sceneSource(const Json& scene, const std::filesystem::path& folder, const Json& film);
 
 /// {"type": name, every parameter…} of a sampler's dictionary, checked.
 Json resolveSampler(const JsonNode& sampler);

@@ -24,7 +24,7 @@ const std::atomic<bool>& watchSignals() {
     return stop;
 }
 
-void failIfSignalled(const char* message) {
+void failIfSignalled(const std::string& message) {
     if (!stop) return;
     const bool interrupted = caught == SIGINT;
     fail(interrupted ? ExitCode::Interrupted : ExitCode::Terminated, "stopped by {}; {}",

@@ -2,6 +2,7 @@
 // SIGINT and SIGTERM as a wish: work stops at the next opportunity and keeps what is finished. A second signal kills.
 
 #include <atomic>
+#include <string>
 
 namespace ulam {
 
@@ -9,6 +10,6 @@ namespace ulam {
 const std::atomic<bool>& watchSignals();
 
 /// Throws Interrupted or Terminated, after which `message` stands, if a signal came.
-void failIfSignalled(const char* message);
+void failIfSignalled(const std::string& message);
 
 }  // namespace ulam

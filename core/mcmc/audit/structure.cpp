@@ -1,5 +1,6 @@
 #include "core/mcmc/audit/structure.h"
 
+#include "core/base/archive.h"
 #include "core/path/validate.h"
 
 namespace ulam::audit {
@@ -37,7 +38,7 @@ bool sameFactors(const Scene& scene, const Sample& y) {
     Sample stated;
     stated.path = y.path;
     stated.factors = y.factors;
-    return usedBytes(again) == usedBytes(stated);
+    return bytesOf(again) == bytesOf(stated);
 }
 
 class Trial : StepObserver {
@@ -71,20 +72,20 @@ public:
 private:
     void propose(const std::vector<Block>& script, bool primary) {
         const Sample& x = chain_.x;
-        const std::string before = usedBytes(x);
+        const std::string before = bytesOf(x);
         Random first(key_, uint32_t(Stream::Structure), trial_, script), second = first;
         StepContext context{first, target_->tracing(), scene_.limits},
             repeated{second, target_->tracing(), scene_.limits};
         Proposal p = subject_.mutation().propose(x, context);
         const Proposal q = subject_.mutation().propose(x, repeated);
-        check(usedBytes(x) == before, "propose changed the current state");
+        check(bytesOf(x) == before, "propose changed the current state");
         check(p.reject == q.reject, "the same seed was rejected for another reason");
         if (p.reject != Reject::None) {
             ++tally_.rejected[size_t(p.reject)];
             return;
         }
         ++tally_.proposals;
-        check(usedBytes(p.y) == usedBytes(q.y), "the same seed gave another proposal");
+        check(bytesOf(p.y) == bytesOf(q.y), "the same seed gave another proposal");
         const std::array<double, 3> logs{p.logForward, p.logReverse, p.logJacobian},
             again{q.logForward, q.logReverse, q.logJacobian};
         check(std::equal(logs.begin(), logs.end(), again.begin()),

@@ -91,47 +91,6 @@ States drawStates(const AuditScene& scene, const Subject& subject, RandomKey key
     return states;
 }
 
-namespace {
-
-class Bytes {
-public:
-    template <class T>
-    requires std::is_arithmetic_v<T> || std::is_enum_v<T>
-    void add(const T& value) { out.append(reinterpret_cast<const char*>(&value), sizeof value); }
-    template <class T>
-    void add(const Imath::Vec3<T>& v) {
-        add(v.x), add(v.y), add(v.z);
-    }
-    void add(const Vec2f& v) { add(v.x), add(v.y); }
-    void add(const Vertex& v) {
-        add(v.kind), add(v.position), add(v.shape);
-        if (!v.onSurface()) return;
-        add(v.normal), add(v.shadingNormal), add(v.uv), add(v.primitive), add(v.lobe);
-    }
-    void add(const Edge& e) { add(e.direction), add(e.cosA), add(e.cosB), add(e.inverseD2); }
-    void add(const Scattering& s) { add(s.f), add(s.pdfToCamera), add(s.pdfToLight); }
-
-    std::string out;
-};
-
-}  // namespace
-
-std::string usedBytes(const Sample& x) {
-    Bytes bytes;
-    for (int s = 0; s < kStreams; ++s)
-        for (int i = 0; i < x.u.size(NumberStream(s)); ++i)
-            for (double u : x.u(NumberStream(s), i)) bytes.add(u);
-    bytes.add(x.technique.s), bytes.add(x.technique.t);
-    const int size = x.path.size();
-    bytes.add(size);
-    for (int i = 0; i < size; ++i) bytes.add(x.path[i]), bytes.add(x.factors.at[size_t(i)]);
-    for (int i = 0; i + 1 < size; ++i) bytes.add(x.factors.edge[size_t(i)]);
-    bytes.add(x.logDensity), bytes.add(x.logTarget);
-    for (int i = 0; i < x.splats.size(); ++i)
-        bytes.add(x.splats[i].raster), bytes.add(x.splats[i].value), bytes.add(x.splats[i].feature);
-    return std::move(bytes.out);
-}
-
 std::string pathClass(const Path& path) {
     std::string text;
     for (int i = 0; i < path.size(); ++i) {

@@ -77,9 +77,6 @@ struct States {
 /// paths, so that rare and dim ones are there too. A shortest and a longest path are among them.
 States drawStates(const AuditScene& scene, const Subject& subject, RandomKey key, uint64_t samples, size_t count);
 
-/// Every bit of the used part of a state: two strings are equal exactly if the states are.
-std::string usedBytes(const Sample& x);
-
 /// "LSTRSC"-like picture of a path, light first: P point, I at infinity, S smooth, R and T delta lobes.
 std::string pathClass(const Path& path);
 

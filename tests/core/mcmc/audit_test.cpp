@@ -1,5 +1,6 @@
 // The audit accepts right mutations and rejects planted bugs. Fixed seeds; statistical rejections at a level of 1e-6.
 
+#include "core/base/archive.h"
 #include "core/mcmc/audit/balance.h"
 #include "core/mcmc/audit/invariance.h"
 #include "core/mcmc/audit/jacobian.h"
@@ -74,12 +75,12 @@ TEST_CASE("Used bytes tell states apart") {
     const AuditScene& scene = sceneNamed("diffuse");
     const Subject subject("identity", Space::Path);
     Sample x = drawStates(scene, subject, kKey, 50, 1).x.at(0), y = x;
-    CHECK(usedBytes(x) == usedBytes(y));
+    CHECK(bytesOf(x) == bytesOf(y));
     y.path[y.path.length()].position.x += 1e-6f;
-    CHECK(usedBytes(x) != usedBytes(y));
+    CHECK(bytesOf(x) != bytesOf(y));
     y = x;
     y.factors.at[1].pdfToLight *= 1 + 1e-15;
-    CHECK(usedBytes(x) != usedBytes(y));
+    CHECK(bytesOf(x) != bytesOf(y));
 }
 
 TEST_CASE("Every registered mutation passes L0 and L1") {
