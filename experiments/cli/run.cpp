@@ -9,6 +9,7 @@
 #include "core/config/suggest.h"
 #include "experiments/cli/arguments.h"
 #include "experiments/cli/commands.h"
+#include "experiments/engine/reference.h"
 #include "experiments/engine/result.h"
 #include "experiments/engine/signals.h"
 #include "experiments/engine/summary.h"
@@ -111,6 +112,7 @@ void runExperiment(const RunArguments& a) {
              options.runDir.string());
 
     if (a.resume) removeTemporaries(options.runDir);
+    removeTemporaries(referenceCache(), Below::No);
     Progress progress(a.quiet);
     std::vector<std::string> warnings = replicateWarnings(plan);
     if (!lock.held())

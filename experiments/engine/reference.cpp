@@ -45,7 +45,6 @@ void write(const PlannedReference& reference, const fs::path& folder, const Imag
 
 /// The cache is a convenience: where it cannot be written, the next run makes the reference again.
 void fillCache(const fs::path& folder, const std::string& key) {
-    removeTemporaries(referenceCache(), Below::No);
     const fs::path temporary = referenceCache() / temporaryName();
     std::error_code error;
     try {

@@ -30,7 +30,6 @@ EXPERIMENT = {
     "snapshots": 1,
     "metrics": ["relmse"],
     "reference": {"sampler": "path", "budget": {"spp": 64}, "replicates": 4},
-    "sweep": {"max_depth": [2, 3]},
 }
 
 
@@ -77,7 +76,7 @@ def is_whole(name, data):
     return True
 
 
-TIMES = ("seconds", "efficiency", "speedup", "rss", "per_second", "ess")
+TIMES = ("seconds", "speedup", "slope", "efficiency", "per_second")  # the slope is of errors over time
 
 
 def without_times(value):
@@ -98,24 +97,20 @@ class Undisturbed:
     """What a run leaves when nothing goes wrong, and the comparison with a disturbed one."""
 
     def __init__(self, folder):
-        self.files = files(folder)
+        # The cache is a convenience, and may have been filled or not.
+        self.files = {name: data for name, data in files(folder).items() if not name.startswith("cache/")}
         self.images = {name: data for name, data in self.files.items() if name.endswith(".exr")}
         self.summary = without_times(json.loads(self.files["run/summary.json"]))
 
     def torn(self, folder):
-        """Files that are neither whole nor temporary. Images are the same bytes in every run of the same work."""
-        found = []
-        for name, data in files(folder).items():
-            if ".ulam-" in name:
-                continue
-            same = self.images.get(name, data) == data  # parts of references are not there at the end
-            if not (same and is_whole(name, data)):
-                found.append(name)
-        return found
+        """Files that are neither whole nor temporary. Images are the same bytes in every run of the same work; those of
+        parts of references, which are not there at the end, are judged when the reference is."""
+        return [name for name, data in files(folder).items()
+                if ".ulam-" not in name and not (self.images.get(name, data) == data and is_whole(name, data))]
 
     def differences(self, folder):
         """What is not as in the undisturbed run, when everything is done."""
-        now = files(folder)
+        now = {name: data for name, data in files(folder).items() if not name.startswith("cache/")}
         found = [f"{name} is missing" for name in self.files if name not in now]
         found += [f"{name} is too much" for name in now if name not in self.files or is_temporary(name)]
         found += [f"{name} differs" for name, data in self.images.items() if now.get(name, data) != data]
