@@ -2,14 +2,15 @@
 """A storm of SIGKILL at random moments of an experiment that is taken up again after each: no file is ever torn, what is
 finished stays as it is, and the end is that of an undisturbed run.
 
-Quick: 20 kills; full: 1000; ULAM_KILLS asks for another number. The moments come from a fixed seed, but where in its work
-they find the program depends on the machine.
+Quick: 20 kills; full: 1000; ULAM_KILLS asks for another number, ULAM_KILL_SEED for other moments. These come from a fixed
+seed, but where in its work they find the program depends on the machine.
 """
 
 import os
 import pathlib
 import random
 import subprocess
+import sys
 import tempfile
 import time
 import unittest
@@ -47,13 +48,13 @@ class Storm(unittest.TestCase):
         seconds = time.monotonic() - start
         undisturbed = tiny.Undisturbed(calm)
 
-        moments = random.Random(11)
+        moments = random.Random(int(os.environ.get("ULAM_KILL_SEED", 11)))
         kills = runs = kept = left_over = 0
         folder, before = self.folder(), {}
         while kills < KILLS:
             process = tiny.start(tiny.run_arguments("--resume"), folder)
             try:
-                process.communicate(timeout=moments.uniform(0, 0.6 * seconds))
+                process.communicate(timeout=moments.uniform(0, 0.4 * seconds))
             except subprocess.TimeoutExpired:
                 process.kill()
                 process.communicate()
@@ -69,6 +70,8 @@ class Storm(unittest.TestCase):
                     continue  # parts go when the whole is there
                 self.assertEqual(now.get(name), state, f"{name} was finished {kills} kills ago or less, and has changed")
             kept += len(before)
+            if kills % 50 == 0:
+                print(f"{kills} kills, {runs} runs to the end", file=sys.stderr)
             before = now
             if process.returncode == 0:
                 self.assertEqual(undisturbed.differences(folder), [])
