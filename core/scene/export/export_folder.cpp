@@ -50,8 +50,10 @@ ExportFolder::ExportFolder(const fs::path& place, const ExportFormat& format) : 
         checkReplaceable(place_, format_);
     }
     removeTemporaries(place_.parent_path(), Below::No);
+    makeFolder(place_.parent_path());
     made_ = place_.parent_path() / temporaryName();
-    makeFolder(made_);
+    fs::create_directory(made_, error);
+    if (error) failToWrite(place_, error);
 }
 
 ExportFolder::~ExportFolder() {
@@ -60,7 +62,11 @@ ExportFolder::~ExportFolder() {
 }
 
 void ExportFolder::write(const std::string& name, std::string_view bytes) {
-    writeFileAtomically(pathFor(name), bytes);
+    try {
+        writeFileAtomically(pathFor(name), bytes);
+    } catch (const Error& error) {  // which names the temporary folder
+        fail(error.code(), "cannot write {}: {}", (place_ / name).string(), error.what());
+    }
 }
 
 fs::path ExportFolder::pathFor(const std::string& name) const {
