@@ -8,11 +8,14 @@ Work quickWork() {
     Work w;
     w.seedSamples = 10'000, w.states = 1000;
     w.structure = 10'000, w.balance = 20'000, w.jacobian = 2500;
-    w.starts = 80'000, w.ranks = 20'000;
+    w.densityStates = 6, w.density = 10'000;
+    w.starts = 60'000, w.ranks = 20'000;
     w.runs = 32;
     w.bootstrap = 20'000, w.pathMutations = 64'000, w.primaryMutations = 16'384, w.samplesPerPixel = 24;
     w.energyWidth = 0.005;
     w.aloneImages = {"specular", "outdoor"}, w.mixedImages = {"specular"};
+    w.partners = 3;
+    w.mixingChains = 100, w.mixingSteps = 1024;
     return w;
 }
 
@@ -20,10 +23,13 @@ Work fullWork() {
     Work w = quickWork();
     w.seedSamples *= 20, w.states *= 10;
     w.structure *= 100, w.balance *= 50, w.jacobian *= 20;
+    w.densityStates *= 10, w.density *= 10;
     w.starts *= 20, w.ranks *= 20;
     w.bootstrap *= 25, w.pathMutations *= 25, w.primaryMutations *= 25, w.samplesPerPixel *= 25;
     w.energyWidth = 0.001;
     w.aloneImages = w.mixedImages = {"diffuse", "specular", "outdoor"};
+    w.partners = 100;
+    w.mixingSteps *= 20;
     return w;
 }
 
