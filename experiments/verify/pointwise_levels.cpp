@@ -165,6 +165,8 @@ Finding auditJacobian(const MutationCase& c) {
 
 Finding auditDensities(const MutationCase& c) {
     Finding finding{.level = "L2", .check = "density"};
+    // A guide draws all numbers of a state, and none of it costs a ray.
+    const uint64_t proposals = c.work().density / (c.space == Space::Primary ? 3 : 1);
     DensityTally all;
     std::vector<double> p;
     size_t classes = 0;
@@ -178,7 +180,7 @@ Finding auditDensities(const MutationCase& c) {
             inParallel<DensityTally>(c.settings.threads, count, 1, [&](uint64_t begin, uint64_t) {
                 // From all over the list: likely states stand first in it, rare ones last.
                 const uint64_t state = begin * have / count + have / (2 * count);
-                return auditDensity(*place.scene, subject, place.states.x[state], c.key, state, c.work().density);
+                return auditDensity(*place.scene, subject, place.states.x[state], c.key, state, proposals);
             });
         take(finding, place.text, tally.failures);
         const DensityTest* odd = nullptr;
@@ -209,7 +211,7 @@ Finding auditDensities(const MutationCase& c) {
     finding.numbers["histograms"] = std::move(shown);
     finding.p = -std::expm1(double(p.size()) * std::log1p(-smallest));  // Šidák
     finding.statistic = smallest;
-    finding.samples = classes * c.work().density;
+    finding.samples = classes * proposals;
     finding.numbers["tests"] = p.size();
     finding.numbers["most_deviating"] = worst;
     finding.summary = fmt::format("{} tests of {} classes of proposals from {} of {} states, p = {:.2g}", p.size(),

@@ -32,7 +32,7 @@ struct Finding {
 };
 
 struct SubjectReport {
-    std::string kind, name;   ///< "mutation" or "sampler"
+    std::string kind, name;   ///< "mutation", "sampler", "kernel" or "target"
     std::string replay = {};  ///< the command that repeats this audit
     std::vector<Finding> findings = {};
     bool rejected() const;

@@ -42,7 +42,13 @@ struct AuditSettings {
 /// Chooses the random numbers of a part of the audit by its name.
 uint64_t cellOf(std::string_view name);
 
-/// Images by bidirectional path tracing, made when they are asked for first.
+// Runs of a share of the work that say how much is needed: scenes and samplers differ widely in variance.
+inline constexpr int kPilotRuns = 12;
+inline constexpr double kPilotShare = 0.05, kMostGrowth = 400, kSafety = 1.6;
+/// How much of the work, in units of it, makes the energy interval narrow enough, judged by a pilot.
+double neededWork(const statistics::MeanEstimate& pilot, const Work& work);
+
+/// Images by bidirectional path tracing, made when they are asked for first; precise enough for the energy interval.
 class References {
 public:
     References(const Work& work, uint64_t seed, int threads) : work_(work), seed_(seed), threads_(threads) {}

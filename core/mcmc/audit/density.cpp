@@ -50,7 +50,9 @@ public:
             PathGuide guide(scene_, x_, entry->first, entry->second);
             if (!guide.possible()) continue;
             std::vector<Coordinates> rows;
-            for (const Sample& s : entry->second) rows.push_back(coordinates(entry->first, s));
+            for (const Sample& s : entry->second)
+                if (guide.covers(s)) rows.push_back(coordinates(entry->first, s));
+            if (rows.empty()) continue;
             tested.push_back({entry->first, std::move(guide), MarginalTest(names(entry->first, entry->second.front().path), rows)});
         }
         tally_.states = 1;
@@ -62,7 +64,7 @@ public:
             if (!propose(i, y)) continue;
             const ProposalClass c(x_.path, y.path);
             for (Tested& t : tested)
-                if (t.c == c) t.test.observe(coordinates(c, y));
+                if (t.c == c && t.guide.covers(y)) t.test.observe(coordinates(c, y));
         }
         double mass = 0, variance = 0;
         for (Tested& t : tested) {
@@ -92,7 +94,7 @@ private:
         Random random = randomOf(key_, Stream::Guide, index_ << 32 | i);
         StepContext context{random, target_->tracing(), scene_.limits};
         Sample y;
-        if (!guide.sample(context, random, y) || target_->evaluatePath(y) != Reject::None || !(ProposalClass(x_.path, y.path) == c)) return true;
+        if (!guide.sample(context, random, y) || target_->evaluatePath(y) != Reject::None || !(ProposalClass(x_.path, y.path) == c) || !guide.covers(y)) return true;
         const auto q = subject_.mutation().logDensity(x_, y, context);
         if (!q) return tally_.hasDensity = false;
         const double weight = std::exp(*q - guide.logDensity(y));

@@ -37,29 +37,26 @@ PathGuide::PathGuide(const AuditScene& scene, const Sample& x, const ProposalCla
     }
     if (fromLight_ < 0) return;
     const auto add = [&](Growth g) {
-        const bool follows = g.source >= 0 && g.source <= k && isDelta(pattern_[g.source].lobe) && pattern_[g.source].onSurface();
-        // Edges are counted from the end the walk comes from.
-        const int edge = std::min(g.vertex, g.source), old = g.camera ? edge - shift : edge;
-        const bool known = old >= 0 && old < x.path.length();
-        std::vector<double> lengths;
-        if (g.vertex == k && g.camera) {
-            for (const Sample& y : pilot) lengths.push_back(onLens(y));
-        } else if (g.raster) {
-            for (const Sample& y : pilot) lengths.push_back((y.splats[0].raster - x.splats[0].raster).length());
-        } else if (!follows && g.source >= 0 && g.source <= k && known && pattern_[g.source].kind != Vertex::Kind::Infinite &&
-                   pattern_[g.source].kind != Vertex::Kind::Direction) {
-            g.local = true;
-            g.center = x.factors.edge[size_t(old)].direction * (g.camera ? -1.0f : 1.0f);
-            for (const Sample& y : pilot)
-                lengths.push_back(angleBetween(g.center, y.factors.edge[size_t(edge)].direction * (g.camera ? -1.0f : 1.0f)));
+        const bool end = g.camera && g.vertex == k;
+        bool measured = end || g.raster;
+        if (!measured && g.source >= 0) {
+            const Vertex& from = pattern_[g.source];
+            // Edges are counted from the end the walk comes from.
+            const int edge = std::min(g.vertex, g.source), old = g.camera ? edge - shift : edge;
+            measured = !(from.onSurface() && isDelta(from.lobe)) && !from.atInfinity() && old >= 0 && old < x.path.length();
+            if (measured) g.center = x.factors.edge[size_t(old)].direction * (g.camera ? -1.0f : 1.0f);
         }
-        if (!lengths.empty()) g.angle = PilotLength(std::move(lengths), g.raster || g.vertex == k ? 1e30 : kPi);
+        if (measured) {
+            std::vector<double> lengths;
+            for (const Sample& y : pilot) lengths.push_back(lengthOf(g, y));
+            g.length = PilotLength(std::move(lengths), end || g.raster ? std::numeric_limits<double>::infinity() : kPi);
+        }
         growths_.push_back(std::move(g));
     };
     for (int i = l + c.added - 1; i > l + fromLight_; --i)
-        add({.vertex = i, .source = i + 1, .camera = true, .raster = i == k - 1, .center = {}, .angle = {}});
+        add({.vertex = i, .source = i + 1, .camera = true, .raster = i == k - 1, .center = {}, .length = {}});
     for (int i = l + 1; i <= l + fromLight_; ++i)
-        add({.vertex = i, .source = i - 1, .camera = false, .center = {}, .angle = {}});
+        add({.vertex = i, .source = i - 1, .camera = false, .center = {}, .length = {}});
 }
 
 bool PathGuide::sample(StepContext& context, Random& random, Sample& y) const {
@@ -79,8 +76,8 @@ Reject PathGuide::grow(const Growth& g, PathEdit& edit, Random& random, Path& pa
     const bool end = g.camera ? g.vertex == path.length() : g.vertex == 0;
     if (end && !g.camera) return edit.growFromLight(u);
     if (end) {
-        if (g.angle.empty() || random() < kWalkShare) return edit.growFromCamera(u);
-        const double length = g.angle.sample(u[0]), phi = 2 * kPi * u[1];
+        if (g.length.empty() || random() < kWalkShare) return edit.growFromCamera(u);
+        const double length = g.length.sample(u[0]), phi = 2 * kPi * u[1];
         const Perspective& sensor = *scene_.scene.sensor;
         const Vec2f p = sensor.onDisc(x_.path.camera()) + Vec2f(float(length * std::cos(phi)), float(length * std::sin(phi)));
         edit.takeFromCamera(sensor.lensPoint(p));
@@ -89,11 +86,11 @@ Reject PathGuide::grow(const Growth& g, PathEdit& edit, Random& random, Path& pa
     const Vertex& pattern = pattern_[g.source];
     if (pattern.onSurface() && isDelta(pattern.lobe))
         return g.camera ? edit.followFromCamera(pattern.lobe) : edit.followFromLight(pattern.lobe);
-    if (g.angle.empty() || random() < kWalkShare) {
+    if (g.length.empty() || random() < kWalkShare) {
         const Reject reject = g.camera ? edit.growFromCamera(u) : edit.growFromLight(u);
         return reject == Reject::None && path[g.source].onSurface() && isDelta(path[g.source].lobe) ? Reject::ZeroTarget : reject;
     }
-    const double length = g.angle.sample(u[0]), phi = 2 * kPi * u[1];
+    const double length = g.length.sample(u[0]), phi = 2 * kPi * u[1];
     path[g.source].lobe = Lobe::Smooth;
     if (g.raster) {
         const Vec2f raster = x_.splats[0].raster + Vec2f(float(length * std::cos(phi)), float(length * std::sin(phi)));
@@ -104,6 +101,18 @@ Reject PathGuide::grow(const Growth& g, PathEdit& edit, Random& random, Path& pa
     const Vec3f local{float(s * std::cos(phi)), float(s * std::sin(phi)), float(std::cos(length))};
     const Vec3f direction = normalize(Frame(g.center).toWorld(local));
     return g.camera ? edit.growFromCameraAlong(direction) : edit.growFromLightAlong(direction);
+}
+
+double PathGuide::lengthOf(const Growth& g, const Sample& y) const {
+    if (g.vertex == y.path.length()) return onLens(y);
+    if (g.raster) return (y.splats[0].raster - x_.splats[0].raster).length();
+    const Edge& edge = y.factors.edge[size_t(std::min(g.vertex, g.source))];
+    return angleBetween(g.center, edge.direction * (g.camera ? -1.0f : 1.0f));
+}
+
+bool PathGuide::covers(const Sample& y) const {
+    return std::all_of(growths_.begin(), growths_.end(),
+                       [&](const Growth& g) { return g.length.empty() || lengthOf(g, y) >= g.length.shortest(); });
 }
 
 double PathGuide::logDensity(const Sample& y) const {
@@ -117,10 +126,10 @@ double PathGuide::pdf(const Growth& g, const Sample& y) const {
     const PathFactors& f = y.factors;
     const int i = g.vertex;
     if (i == y.path.length()) {
-        const double r = onLens(y), radius = scene.sensor->apertureRadius();
-        const double local = r > 0 && radius > 0 ? g.angle.pdf(r) / (2 * kPi * r * radius * radius) : 0;
+        const double r = lengthOf(g, y), radius = scene.sensor->apertureRadius();
+        const double local = r > 0 && radius > 0 ? g.length.pdf(r) / (2 * kPi * r * radius * radius) : 0;
         const double uniform = scene.sensor->positionPdf(y.path.camera());
-        return g.angle.empty() ? uniform : kWalkShare * uniform + (1 - kWalkShare) * local;
+        return g.length.empty() ? uniform : kWalkShare * uniform + (1 - kWalkShare) * local;
     }
     if (i == 0 && !g.camera) return emissionPositionPdf(scene, y.path.light());
     const double walk = g.camera ? f.fromCamera(i) : f.fromLight(i);
@@ -130,16 +139,16 @@ double PathGuide::pdf(const Growth& g, const Sample& y) const {
         return walk / (g.camera ? lobeProbability(scene, y.path[g.source], toCamera, toLight)
                                 : lobeProbability(scene, y.path[g.source], toLight, toCamera));
     }
-    if (g.angle.empty()) return walk;
+    if (g.length.empty()) return walk;
     if (g.raster) {
-        const double r = (y.splats[0].raster - x_.splats[0].raster).length();
+        const double r = lengthOf(g, y);
         // `walk` is the density of a uniform raster position.
-        const double local = r > 0 ? g.angle.pdf(r) / (2 * kPi * r) * scene.sensor->windowArea() : 0;
+        const double local = r > 0 ? g.length.pdf(r) / (2 * kPi * r) * scene.sensor->windowArea() : 0;
         return walk * (kWalkShare + (1 - kWalkShare) * local);
     }
     const Edge& edge = f.edge[size_t(std::min(g.vertex, g.source))];
-    const double theta = angleBetween(g.center, edge.direction * (g.camera ? -1.0f : 1.0f)), s = std::sin(theta);
-    const double local = s > 0 ? g.angle.pdf(theta) / (2 * kPi * s) : 0;
+    const double theta = lengthOf(g, y), s = std::sin(theta);
+    const double local = s > 0 ? g.length.pdf(theta) / (2 * kPi * s) : 0;
     return kWalkShare * walk + (1 - kWalkShare) * (g.camera ? edge.toAreaA(local) : edge.toAreaB(local));
 }
 

@@ -35,6 +35,9 @@ public:
     bool possible() const { return fromLight_ >= 0; }
     bool sample(StepContext& context, Random& random, Sample& y) const;
     double logDensity(const Sample& y) const;
+    /// False for the shortest steps that the pilot has shown. Rounding decides about these: mutations allow for it by
+    /// densities that reach a little below the shortest step they make.
+    bool covers(const Sample& y) const;
 
 private:
     /// One vertex to be grown, from the vertex `source` of y.
@@ -42,12 +45,13 @@ private:
         int vertex, source;
         bool camera;              ///< by a walk from the camera
         bool raster = false;      ///< the first vertex that a raster position determines
-        bool local = false;       ///< `center` may be used
         Vec3f center;             ///< direction that angles are measured from
-        PilotLength angle;        ///< or distance on the film, in pixels; or on the lens, in its radii
+        PilotLength length;       ///< angle, pixels on the film, or radii of the lens; empty: always as a walk goes
     };
     Reject grow(const Growth& g, PathEdit& edit, Random& random, Path& path) const;
     double pdf(const Growth& g, const Sample& y) const;
+    /// What `length` is of.
+    double lengthOf(const Growth& g, const Sample& y) const;
     /// How far y's point on the lens is from x's, in radii of the lens.
     double onLens(const Sample& y) const;
 

@@ -54,6 +54,8 @@ public:
     /// No length is above `longest`.
     PilotLength(std::vector<double> pilot, double longest);
     bool empty() const { return edges_.empty(); }
+    /// The pilot's shortest, but for one bin of them.
+    double shortest() const { return empty() ? 0 : edges_[2]; }
     double sample(double u) const;
     double pdf(double length) const;
 
