@@ -61,11 +61,11 @@ public:
         report_ = {.kind = "mutation", .name = name_};
         timed([&] { findStates(); });
         if (report_.findings.back().outcome == Outcome::NotCovered) return report_;
-        timed([&] { structure(); });
-        timed([&] { balance(); });
-        timed([&] { jacobian(); });
-        timed([&] { invariance(); });
-        timed([&] { images(); });
+        for (const auto check : {&MutationAudit::structure, &MutationAudit::balance, &MutationAudit::jacobian,
+                                 &MutationAudit::invariance, &MutationAudit::images}) {
+            timed([&] { (this->*check)(); });
+            if (settings_.stopAtFirst && report_.rejected()) break;
+        }
         return report_;
     }
 

@@ -53,11 +53,11 @@ Report verify(const Options& options) {
     };
     for (const std::string& mutation : mutations) {
         announce(mutation);
-        add(auditMutation(mutation, AuditSettings{work, options.seed, options.threads, mutations.size()}, references));
+        add(auditMutation(mutation, AuditSettings{work, options.seed, options.threads, mutations.size(), options.stopAtFirst}, references));
     }
     for (const std::string& sampler : samplers) {
         announce(sampler);
-        add(auditSampler(sampler, AuditSettings{work, options.seed, options.threads, samplers.size()}, references));
+        add(auditSampler(sampler, AuditSettings{work, options.seed, options.threads, samplers.size(), options.stopAtFirst}, references));
     }
     return report;
 }
