@@ -22,7 +22,6 @@ Budget scaled(const Budget& budget, double factor) {
 std::string judge(const std::string& sampler, const audit::AuditScene& scene, const AuditSettings& settings,
                   References& references, std::vector<ImageComparison>& comparisons) {
     const Work& work = settings.work;
-    const TiledEstimate& reference = references(scene);
     Json config = samplerConfig(sampler, scene);
     const bool chains = Registry<Sampler>::instance().create(JsonNode(config))->isChainSampler();
     Budget budget;
@@ -41,6 +40,7 @@ std::string judge(const std::string& sampler, const audit::AuditScene& scene, co
         throw;
     }
     if (!pilot.biasLedger.empty()) return pilot.biasLedger.front();
+    const TiledEstimate& reference = references(scene);
     // Half of the interval's square is left to the reference.
     const double found = compare(scene.name, pilot, reference).energyWidth;
     const double factor = kPilotShare * kPilotRuns / work.runs * kSafety * std::pow(found / work.energyWidth, 2) * 2;
@@ -60,6 +60,8 @@ SubjectReport auditSampler(const std::string& sampler, const AuditSettings& sett
     for (const auto& scene : audit::auditScenes()) {
         const std::string why = judge(sampler, *scene, settings, references, comparisons);
         if (!why.empty()) notJudged.push_back(fmt::format("not judged in {}: {}", scene->name, why));
+        // Stopping early, the correction is for fewer tests: a false alarm is at most as many times likelier as there are scenes.
+        if (settings.stopAtFirst && judgeImages(comparisons, work).outcome == Outcome::Rejected) break;
     }
     Finding finding = judgeImages(comparisons, work);
     if (comparisons.empty()) finding.outcome = Outcome::NotAudited, finding.summary = "no audit scene suits it";
