@@ -14,7 +14,7 @@ struct VerifyArguments {
     std::string level = "quick";
     std::shared_ptr<std::uint64_t> seed;
     std::shared_ptr<int> threads;
-    bool json = false;
+    bool stopAtFirst = false, json = false;
 };
 
 void verifyRegistered(const VerifyArguments& a) {
@@ -27,6 +27,7 @@ void verifyRegistered(const VerifyArguments& a) {
     options.level = a.level == "full" ? verify::Level::Full : verify::Level::Quick;
     options.seed = *a.seed;
     options.threads = *a.threads;
+    options.stopAtFirst = a.stopAtFirst;
     options.progress = [&](double fraction, const std::string& what) { progress.update(fraction, what); };
     options.finished = [&](const verify::SubjectReport& subject) {
         if (a.json) return;
@@ -61,6 +62,7 @@ void addVerifyCommand(CLI::App& app) {
         ->capture_default_str();
     a->seed = addSeedOption(command);
     a->threads = addThreadsOption(command);
+    command.add_flag("--stop-at-first", a->stopAtFirst, "leave out the checks that follow a subject's first rejection");
     command.add_flag("--json", a->json, "as JSON");
     addPluginOption(command);
     command.callback([a] { verifyRegistered(*a); });

@@ -19,6 +19,7 @@ SubjectReport auditMutation(const std::string& mutation, const AuditSettings& se
     MutationCase c(mutation, settings);
     SubjectReport report{.kind = "mutation", .name = mutation};
     const auto level = [&](const auto& audit) {
+        if (settings.stopAtFirst && report.rejected()) return;
         const auto start = std::chrono::steady_clock::now();
         report.findings.push_back(audit());
         report.findings.back().seconds =

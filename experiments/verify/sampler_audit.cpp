@@ -19,7 +19,6 @@ Budget scaled(const Budget& budget, double factor) {
 std::string compareSampler(Json config, const audit::AuditScene& scene, const std::string& place, const AuditSettings& settings,
                            References& references, std::vector<ImageComparison>& comparisons) {
     const Work& work = settings.work;
-    const TiledEstimate& reference = references(scene);
     const bool chains = Registry<Sampler>::instance().create(JsonNode(config))->isChainSampler();
     Budget budget;
     (chains ? budget.mutations : budget.spp) = chains ? work.pathMutations : work.samplesPerPixel;
@@ -39,7 +38,7 @@ std::string compareSampler(Json config, const audit::AuditScene& scene, const st
     if (!pilot.biasLedger.empty()) return pilot.biasLedger.front();
     const double factor = neededWork(pilot.energy, work);
     comparisons.push_back(
-        compare(place, render(std::clamp(factor, kPilotShare, kMostGrowth), work.runs, ""), reference));
+        compare(place, render(std::clamp(factor, kPilotShare, kMostGrowth), work.runs, ""), references(scene)));
     return {};
 }
 
@@ -52,6 +51,8 @@ SubjectReport auditSampler(const std::string& sampler, const AuditSettings& sett
     for (const auto& scene : audit::auditScenes()) {
         const std::string why = compareSampler(samplerConfig(sampler, *scene), *scene, fmt::format("{} by {}", scene->name, sampler), settings, references, comparisons);
         if (!why.empty()) notJudged.push_back(fmt::format("not judged in {}: {}", scene->name, why));
+        // Stopping early, the correction is for fewer tests: a false alarm is at most as many times likelier as there are scenes.
+        if (settings.stopAtFirst && judgeImages(comparisons, work).outcome == Outcome::Rejected) break;
     }
     Finding finding = judgeImages(comparisons, work);
     if (comparisons.empty()) finding.outcome = Outcome::NotAudited, finding.summary = "no audit scene suits it";

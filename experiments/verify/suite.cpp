@@ -41,7 +41,7 @@ Report verify(const Options& options) {
     report.level = options.level == Level::Full ? "full" : "quick";
     const Work work = options.level == Level::Full ? fullWork() : quickWork();
     References references(work, options.seed, options.threads);
-    const auto settings = [&](size_t subjects) { return AuditSettings{work, options.seed, options.threads, subjects}; };
+    const auto settings = [&](size_t subjects) { return AuditSettings{work, options.seed, options.threads, subjects, options.stopAtFirst}; };
     std::vector<Kind> kinds{
         {"kernel", options.kernels, {"metropolis_hastings"}, [](const std::string& name, size_t) { return auditKernel(name); }},
         {"target", options.targets, registeredNames<Importance>(),

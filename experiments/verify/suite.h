@@ -14,6 +14,7 @@ struct Options {
     Level level = Level::Quick;
     uint64_t seed = 1;
     int threads = 1;
+    bool stopAtFirst = false;  ///< a subject's audit ends with its first rejection
     std::function<void(double fraction, const std::string& what)> progress = {};
     std::function<void(const SubjectReport&)> finished = {};  ///< after each subject
 };

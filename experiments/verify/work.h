@@ -36,7 +36,8 @@ struct AuditSettings {
     Work work;
     uint64_t seed;
     int threads;
-    size_t subjects;  ///< that share the suite's level
+    size_t subjects;           ///< that share the suite's level
+    bool stopAtFirst = false;  ///< leaves out what comes after a subject's first rejection
 };
 
 /// Chooses the random numbers of a part of the audit by its name.
