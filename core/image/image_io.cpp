@@ -62,6 +62,7 @@ std::unique_ptr<OIIO::ImageInput> openImage(const std::string& path) {
     if (!std::filesystem::is_regular_file(path, ignored)) {
         fail(ExitCode::InvalidConfig, "{}: expected an image file; found something that is no file", path);
     }
+    requireReadable(path);
 
     auto input = OIIO::ImageInput::create(ending);
     if (!input) fail(ExitCode::InvalidConfig, "{}: {}", path, oneLine(OIIO::geterror()));
