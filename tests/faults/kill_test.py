@@ -73,7 +73,7 @@ class Storm(unittest.TestCase):
                 self.assertEqual(now.get(name), state, f"{name} was finished {kills} kills ago or less, and has changed")
             kept += len(before)
             new = len(now) - len(before)
-            span *= 0.8 if process.returncode == 0 or new > 10 else 1.3 if new == 0 else 1
+            span *= 0.8 if process.returncode == 0 or new > 10 else 1.1 if new == 0 else 1
             if kills % 50 == 0:
                 print(f"{kills} kills, {runs} runs to the end", file=sys.stderr)
             before = now
