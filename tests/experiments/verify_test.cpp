@@ -67,6 +67,14 @@ TEST_CASE("Planted bugs are rejected, each by the levels that can see it") {
     CHECK_FALSE(findingOf(blind, "structure").details.empty());
 }
 
+TEST_CASE("An audit can end with its first rejection") {
+    planted::registerAll();
+    References references(smallWork(), 1, 2);
+    const SubjectReport report = auditMutation("planted_geometry", {smallWork(), 1, 2, 1, true}, references);
+    CHECK(report.findings.back().check == "jacobian");
+    CHECK(report.findings.back().outcome == Outcome::Rejected);
+}
+
 TEST_CASE("What cannot be audited is said") {
     const SubjectReport silent = audited("planted_silent");
     CHECK(findingOf(silent, "balance").outcome == Outcome::NotAudited);
