@@ -75,6 +75,7 @@ ExitCode runProgram(int argc, char* argv[]) {
     ulam::addNewCommand(app);
     ulam::addBenchCommand(app);
     ulam::addVerifyCommand(app);
+    ulam::addReplayPathCommand(app);
     if (argc > 1) checkCommand(app, argv[1]);
     try {
         app.parse(argc, argv);

@@ -31,7 +31,7 @@ public:
     std::unique_ptr<SamplerRun> start(const RunContext& context) const override {
         BidirectionalOptions options;
         options.limits = parameters_.limits;
-        return std::make_unique<ChainRun>(context, parameters_.chains, parameters_.limits,
+        return std::make_unique<ChainRun>(context, parameters_.chains, options,
                                           MutationMix::fromConfig(parameters_.mutations, Space::Path), Deposit::ExpectedValues,
                                           [&] { return makePathTarget(context.scene, options, *importance_); });
     }

@@ -38,7 +38,7 @@ public:
         BidirectionalOptions options;
         options.limits = parameters_.limits;
         if (parameters_.base == "path") options.techniques = {.hitLight = true, .nextEvent = true, .connect = false, .lightImage = false};
-        auto run = std::make_unique<ChainRun>(context, parameters_.chains, parameters_.limits,
+        auto run = std::make_unique<ChainRun>(context, parameters_.chains, options,
                                           MutationMix::fromConfig(parameters_.mutations, Space::Primary),
                                           parameters_.deposit == "kelemen" ? Deposit::Kelemen : Deposit::ExpectedValues,
                                           [&] { return makePrimaryTarget(context.scene, options, *importance_); });

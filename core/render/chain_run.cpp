@@ -2,6 +2,7 @@
 
 #include "core/image/splat_queue.h"
 #include "core/render/parallel.h"
+#include "core/render/replay.h"
 
 #include <chrono>
 #include <thread>
@@ -150,11 +151,11 @@ struct ChainRun::Worker : StepObserver {
     Cause cause = Cause::None;  ///< of the last step
 };
 
-ChainRun::ChainRun(const RunContext& context, const ChainParameters& parameters, const PathLimits& limits, MutationMix mix, Deposit deposit,
+ChainRun::ChainRun(const RunContext& context, const ChainParameters& parameters, const BidirectionalOptions& options, MutationMix mix, Deposit deposit,
                    const TargetMaker& makeTarget)
     : context_(context),
       parameters_(parameters),
-      limits_(limits),
+      options_(options),
       mix_(std::move(mix)),
       deposit_(deposit),
       pilotNumbers_(context.key, kPilotStream),
@@ -332,7 +333,7 @@ void ChainRun::work(int worker, uint64_t begin, uint64_t end) {
 
 void ChainRun::step(Worker& w, Chain& chain, StepObserver& observer) {
     Random random(context_.key, chain.index, chain.step);
-    StepContext context{random, w.target->tracing(), limits_};
+    StepContext context{random, w.target->tracing(), options_.limits};
     w.kernel.step(chain, *w.target, context, observer);
 }
 
@@ -352,6 +353,35 @@ ChainRun::Worker& ChainRun::gathered() {
     Worker& first = *workers_[0];
     for (size_t i = 1; i < workers_.size(); ++i) first.take(*workers_[i]);
     return first;
+}
+
+Json ChainRun::replay(const NonFiniteEvent& event) {
+    Worker& w = *workers_[0];
+    if (event.kind != NonFiniteEvent::Kind::Step) {
+        const bool pilot = event.kind == NonFiniteEvent::Kind::Pilot;
+        Json json = {{pilot ? "pilot_sample" : "bootstrap_sample", event.unit}};
+        (pilot ? pilotNumbers_ : bootstrapNumbers_).with(event.unit, [&](Random& random) {
+            PrimaryVector u;
+            Numbers numbers(u, random);
+            const Vec2f raster = context_.scene.sensor->sampleRaster(numbers(NumberStream::Camera, 0));
+            json.update(describeSample(context_.scene, options_, raster, numbers));
+        });
+        return json;
+    }
+    struct Recorder : StepObserver {
+        void observe(const Chain& before, const Proposal& proposal, const StepInfo& info) override {
+            if (before.step == step) json = describeStep(run.context_.scene, run.options_, run.mix_, before, proposal, info);
+        }
+        Recorder(const ChainRun& r, uint64_t s) : run(r), step(s) {}
+        const ChainRun& run;
+        uint64_t step;
+        Json json;
+    } recorder(*this, event.step);
+    prepare(neverStop);
+    const auto slot = std::find_if(chains_.begin(), chains_.end(), [&](const auto& s) { return s->chain.index == event.chain; });
+    if (slot == chains_.end()) fail(ExitCode::InvalidConfig, "there is no chain {} in this run", event.chain);
+    while ((*slot)->chain.step < event.step) step(w, (*slot)->chain, recorder);
+    return recorder.json;
 }
 
 Image ChainRun::develop(uint64_t units) {

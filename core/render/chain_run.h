@@ -37,7 +37,7 @@ using TargetMaker = std::function<std::unique_ptr<Target>()>;
 
 class ChainRun : public SamplerRun {
 public:
-    ChainRun(const RunContext& context, const ChainParameters& parameters, const PathLimits& limits, MutationMix mix, Deposit deposit,
+    ChainRun(const RunContext& context, const ChainParameters& parameters, const BidirectionalOptions& options, MutationMix mix, Deposit deposit,
              const TargetMaker& makeTarget);
     ~ChainRun() override;
 
@@ -51,6 +51,7 @@ public:
     void report(uint64_t units, RenderStatistics& statistics) override;
     void save(ByteWriter& state) override { archive(state); }
     void restore(ByteReader& state) override { archive(state); }
+    Json replay(const NonFiniteEvent& event) override;
 
 private:
     struct Worker;
@@ -76,7 +77,7 @@ private:
 
     RunContext context_;
     ChainParameters parameters_;
-    PathLimits limits_;
+    BidirectionalOptions options_;  ///< of the samples that seed the chains
     MutationMix mix_;
     Deposit deposit_;
     std::vector<std::unique_ptr<Worker>> workers_;

@@ -1,6 +1,7 @@
 #include "core/render/independent_run.h"
 
 #include "core/image/splat_queue.h"
+#include "core/render/replay.h"
 #include "core/render/technique_films.h"
 
 #include <limits>
@@ -23,7 +24,7 @@ public:
             sink.add(c, feature);
         });
     }
-    bool walksFromLight() const override { return sampler_.options().techniques.walkFromLight(); }
+    const BidirectionalOptions& options() const override { return sampler_.options(); }
     uint64_t rays() const override { return sampler_.tracing().rays(); }
 
 private:
@@ -118,14 +119,19 @@ IndependentRun::IndependentRun(const RunContext& context, const SourceMaker& mak
 
 IndependentRun::~IndependentRun() = default;
 
+/// The numbers of a sample, whose pixel the worker then has.
+Numbers IndependentRun::numbersOf(uint64_t sample, Worker& w, Random& random) const {
+    w.u.clear();
+    w.pixel = order_.pixel(sample);
+    numbers_.begin(uint32_t(w.pixel), uint32_t(sample / uint64_t(order_.pixels())), w.source->options().techniques.walkFromLight(), w.u);
+    return Numbers(w.u, random);
+}
+
 void IndependentRun::work(int worker, uint64_t begin, uint64_t end) {
     Worker& w = *workers_[size_t(worker)];
     for (uint64_t i = begin; i < end; ++i) {
         Random random(key_, 0, i);
-        w.u.clear();
-        w.pixel = order_.pixel(i);
-        numbers_.begin(uint32_t(w.pixel), uint32_t(i / uint64_t(order_.pixels())), w.source->walksFromLight(), w.u);
-        Numbers numbers(w.u, random);
+        Numbers numbers = numbersOf(i, w, random);
         w.sum = Spectrum(0.0);
         takeCause();  // of what came before
         w.source->sample(order_.raster(w.pixel, numbers(NumberStream::Camera, 0)), numbers, w);
@@ -170,6 +176,16 @@ void IndependentRun::save(ByteWriter& state) {
 
 void IndependentRun::restore(ByteReader& state) {
     state(raysBefore_, gathered());
+}
+
+Json IndependentRun::replay(const NonFiniteEvent& event) {
+    Worker& w = *workers_[0];
+    Random random(key_, 0, event.unit);
+    Numbers numbers = numbersOf(event.unit, w, random);
+    Json json = {{"sample", event.unit}, {"pixel", {w.pixel % w.film.width(), w.pixel / w.film.width()}}};
+    if (w.source->isGuided()) json["note"] = "this sampler also follows directions of its own, which are not shown";
+    json.update(describeSample(scene_, w.source->options(), order_.raster(w.pixel, numbers(NumberStream::Camera, 0)), numbers));
+    return json;
 }
 
 }  // namespace ulam

@@ -23,7 +23,10 @@ class SampleSource {
 public:
     virtual ~SampleSource() = default;
     virtual void sample(const Vec2f& raster, Numbers& numbers, ContributionSink& sink) = 0;
-    virtual bool walksFromLight() const = 0;
+    /// What it takes of bidirectional path tracing's samples with the same numbers.
+    virtual const BidirectionalOptions& options() const = 0;
+    /// Directions that are not the BSDF's.
+    virtual bool isGuided() const { return false; }
     virtual uint64_t rays() const = 0;
 };
 
@@ -62,10 +65,12 @@ public:
     void report(uint64_t units, RenderStatistics& statistics) override;
     void save(ByteWriter& state) override;
     void restore(ByteReader& state) override;
+    Json replay(const NonFiniteEvent& event) override;
 
 private:
     struct Worker;
 
+    Numbers numbersOf(uint64_t sample, Worker& worker, Random& random) const;
     Worker& gathered();
 
     const Scene& scene_;

@@ -20,9 +20,11 @@ template <class Guide = NoGuide>
 class PathSource : public SampleSource {
 public:
     PathSource(const Scene& scene, const PathLimits& limits, Heuristic heuristic, const Guide& guide = {})
-        : limits_(limits), heuristic_(heuristic), guide_(guide), tracing_(scene) {}
+        : limits_(limits), heuristic_(heuristic), guide_(guide), tracing_(scene),
+          options_{limits, {.connect = false, .lightImage = false}, heuristic} {}
 
-    bool walksFromLight() const override { return false; }
+    const BidirectionalOptions& options() const override { return options_; }
+    bool isGuided() const override { return Guide::present; }
     uint64_t rays() const override { return tracing_.rays(); }
 
     void sample(const Vec2f& raster, Numbers& numbers, ContributionSink& sink) override {
@@ -126,6 +128,7 @@ private:
     Heuristic heuristic_;
     Guide guide_;
     Tracing tracing_;
+    BidirectionalOptions options_;
     Subpath light_;
     // Of the sample being made:
     Spectrum throughput_;

@@ -49,6 +49,9 @@ public:
     virtual void save(ByteWriter& state) = 0;
     virtual void restore(ByteReader& state) = 0;
 
+    /// Makes a sample or a step again, in a run that was just started, and tells what it was (replay.h).
+    virtual Json replay(const NonFiniteEvent& event) = 0;
+
     /// A bias that the sampler knows of, for the result; nothing: none.
     void noteBias(const std::optional<std::string>& bias) {
         if (bias) biasLedger_.push_back(*bias);

@@ -16,5 +16,6 @@ void addReportCommand(CLI::App& app);
 void addNewCommand(CLI::App& app);
 void addBenchCommand(CLI::App& app);
 void addVerifyCommand(CLI::App& app);
+void addReplayPathCommand(CLI::App& app);
 
 }  // namespace ulam

@@ -110,8 +110,8 @@ void renderImage(const RenderArguments& a) {
                               : result.lost.empty() ? fmt::format("; --resume goes on from {}", options.checkpoint->file.string())
                                                     : "; it cannot be resumed: " + result.lost;
     if (result.interrupted && isBlack(result.image)) failIfSignalled("nothing was found until then, and there is no image" + after);
-    if (!result.interrupted) refuseBlackImage(result);
-    for (const std::string& warning : warningsOf(result)) progress.message("warning: " + warning);
+    if (!result.interrupted) refuseBlackImage(run, result);
+    for (const std::string& warning : warningsOf(run, result)) progress.message("warning: " + warning);
     const fs::path output = a.output;
     const FileLock together = FileLock::await(output.parent_path());  // of renders with one name, the files of one win
     removeTemporaries(output.parent_path().empty() ? "." : output.parent_path(), Below::No);

@@ -81,10 +81,8 @@ Scene buildScene(const RenderJob& job, const std::vector<std::string>& assignmen
     return description.build(job.film);
 }
 
-Repetition repetition(const fs::path& file) {
-    const JsonDocument document = JsonDocument::fromFile(file);
-    const JsonNode result = document.root(), repeat = result.at("repeat"), source = repeat.at("scene");
-    const JsonNode scene = source.at("scene");
+RenderJob jobOf(const JsonNode& repeat) {
+    const JsonNode source = repeat.at("scene"), scene = source.at("scene"), sampler = repeat.at("sampler");
     SceneFileOptions options;
     if (const auto lenient = source.find("lenient")) options.lenient = lenient->boolean();
     if (const auto definitions = source.find("definitions"))
@@ -93,16 +91,24 @@ Repetition repetition(const fs::path& file) {
     if (const auto set = source.find("set"))
         for (const JsonNode& assignment : set->elements()) assignments.push_back(assignment.string());
 
-    Repetition r{.job = {.scene = scene.isString() ? readSceneDocument(scene.string(), options)
-                                                   : JsonDocument::fromText(scene.json().dump(), scene.where()),
-                         .folder = source.at("folder").string(),
-                         .film = source.at("film").json(),
-                         .sampler = JsonDocument::fromText(repeat.at("sampler").json().dump(), repeat.at("sampler").where()),
-                         .budget = parseBudget(repeat.at("budget"))},
+    RenderJob job{.scene = scene.isString() ? readSceneDocument(scene.string(), options)
+                                            : JsonDocument::fromText(scene.json().dump(), scene.where()),
+                  .folder = source.at("folder").string(),
+                  .film = source.at("film").json(),
+                  .sampler = JsonDocument::fromText(sampler.json().dump(), sampler.where()),
+                  .budget = parseBudget(repeat.at("budget"))};
+    assign(assignments, job.scene, job.sampler);
+    job.run.source = source.json();
+    return job;
+}
+
+Repetition repetition(const fs::path& file) {
+    const JsonDocument document = JsonDocument::fromFile(file);
+    const JsonNode result = document.root();
+    Repetition r{.job = jobOf(result.at("repeat")),
                  .sceneHash = result.at("scene_hash").string(),
                  .imageHash = result.at("image_sha256").string(),
                  .version = result.at("program_version").string()};
-    assign(assignments, r.job.scene, r.job.sampler);
     RunIdentity& run = r.job.run;
     run.scene = result.at("scene").string();
     run.sampler = result.at("sampler").string();
@@ -112,7 +118,6 @@ Repetition repetition(const fs::path& file) {
     const auto key = result.at("random_key").elements();
     if (key.size() != 2) result.at("random_key").expected("two numbers");
     run.key = {uint32_t(key[0].unsignedInteger()), uint32_t(key[1].unsignedInteger())};
-    run.source = source.json();
     return r;
 }
 

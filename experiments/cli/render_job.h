@@ -32,6 +32,9 @@ RenderJob renderJob(const RenderWishes& wishes);
 /// Builds the job's scene. Where the film is refused, the `--set` that is to blame is named.
 Scene buildScene(const RenderJob& job, const std::vector<std::string>& assignments);
 
+/// Scene, sampler and budget that a result has under "repeat".
+RenderJob jobOf(const JsonNode& repeat);
+
 /// The run that a result.json is of, with the work it did as its budget.
 struct Repetition {
     RenderJob job;

@@ -10,6 +10,7 @@
 #include "core/base/sha256.h"
 #include "core/mcmc/mutation_mix.h"
 #include "experiments/engine/mixing.h"
+#include "experiments/engine/path_token.h"
 #include "experiments/engine/provenance.h"
 
 namespace ulam {
@@ -73,6 +74,10 @@ Json resultJson(const RunIdentity& run, const RenderResult& result, const Featur
     Json energy = Json::object();
     for (std::size_t i = 0; i < std::min(features.names.size(), s.featureEnergy.size()); ++i)
         energy[features.names[i]] = s.featureEnergy[i];
+    const Json repeat = repetition(run, result);
+    Json nonFinite = Json::array();
+    for (const NonFiniteEvent& event : s.nonFinite.first())
+        nonFinite.push_back({{"cause", event.cause}, {"token", pathToken(run, repeat, event)}});
     Json snapshots = Json::array();
     for (std::size_t i = 0; i < result.snapshots.size(); ++i) {
         const Snapshot& shot = result.snapshots[i];
@@ -110,9 +115,10 @@ Json resultJson(const RunIdentity& run, const RenderResult& result, const Featur
         {"feature_energy", energy},
         {"feature_jumps", s.featureJumps},
         {"non_finite", s.nonFinite.counts()},
+        {"non_finite_first", std::move(nonFinite)},
         {"bias_ledger", s.biasLedger},
         {"diagnostics", s.diagnostics},
-        {"repeat", repetition(run, result)},
+        {"repeat", repeat},
         {"mixing", mixing(s.traces, result.wallSeconds)},
         {"snapshots", snapshots},
         {"width", result.image.width},
@@ -135,17 +141,22 @@ bool isBlack(const Image& image) {
     return std::all_of(image.pixels.begin(), image.pixels.end(), black);
 }
 
-std::vector<std::string> warningsOf(const RenderResult& result) {
+std::vector<std::string> warningsOf(const RunIdentity& run, const RenderResult& result) {
     std::vector<std::string> warnings;
-    for (const auto& [cause, count] : result.statistics.nonFinite.counts())
+    const NonFiniteLog& log = result.statistics.nonFinite;
+    for (const auto& [cause, count] : log.counts()) {
         warnings.push_back(fmt::format("{} samples or steps met a value that is not finite, or beyond {:g}, and left it out: {}",
                                        count, FixedSum::kLargestTerm, cause));
+        const auto first = std::find_if(log.first().begin(), log.first().end(), [&, &name = cause](const auto& e) { return e.cause == name; });
+        if (first != log.first().end())
+            warnings.back() += fmt::format("\n    see the first: ulam replay-path {}", pathToken(run, repetition(run, result), *first));
+    }
     return warnings;
 }
 
-void refuseBlackImage(const RenderResult& result) {
+void refuseBlackImage(const RunIdentity& run, const RenderResult& result) {
     if (!isBlack(result.image)) return;
-    for (const std::string& warning : warningsOf(result)) fail(ExitCode::InvalidConfig, "the image is black: {}", warning);
+    for (const std::string& warning : warningsOf(run, result)) fail(ExitCode::InvalidConfig, "the image is black: {}", warning);
     if (result.units == 0) fail(ExitCode::InvalidConfig, "the budget was spent before the first sample or mutation was made");
     fail(ExitCode::InvalidConfig,
          "no path carried light: all of {} samples and mutations found nothing. Is the camera inside a wall or "

@@ -40,11 +40,11 @@ ImageAttributes imageAttributes(const RunIdentity& run);
 /// Every pixel is 0.
 bool isBlack(const Image& image);
 
-/// What a user should hear about a run, in words: contributions that were refused, by cause.
-std::vector<std::string> warningsOf(const RenderResult& result);
+/// What a user should hear about a run, in words: what was refused, by cause, and how to see the first.
+std::vector<std::string> warningsOf(const RunIdentity& run, const RenderResult& result);
 
 /// Fails with InvalidConfig where no path carried light.
-void refuseBlackImage(const RenderResult& result);
+void refuseBlackImage(const RunIdentity& run, const RenderResult& result);
 
 /// SHA-256 of width, height and the float values.
 std::string imageHash(const Image& image);

@@ -59,6 +59,7 @@ private:
         void report(uint64_t units, RenderStatistics& s) override { run->report(units, s); }
         void save(ByteWriter& state) override { run->save(state); }
         void restore(ByteReader& state) override { run->restore(state); }
+        Json replay(const NonFiniteEvent& event) override { return run->replay(event); }
 
         Interrupted& outer;
         std::unique_ptr<SamplerRun> run;
