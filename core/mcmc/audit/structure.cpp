@@ -67,6 +67,12 @@ public:
         Random random(key_, uint32_t(Stream::Structure), trial, script);
         StepContext context{random, target_->tracing(), scene_.limits};
         kernel_.step(chain_, *target_, context, *this);
+
+        check(bytesOf(chain_.x) == next_, "the state after the step is neither the old one nor the proposal");
+        Chain fresh;
+        fresh.x = chain_.x;
+        kernel_.enter(fresh);
+        check(fresh.z == chain_.z && fresh.suitability == chain_.suitability, "the suitabilities kept with the state are not its own");
     }
 
 private:
@@ -102,7 +108,8 @@ private:
             check(sameFactors(scene_.scene, p.y), "the factors differ from those computed from scratch");
     }
 
-    void observe(const Chain&, const Proposal& proposal, const StepInfo& info) override {
+    void observe(const Chain& before, const Proposal& proposal, const StepInfo& info) override {
+        next_ = bytesOf(info.accepted ? proposal.y : before.x);
         check(info.acceptance >= 0 && info.acceptance <= 1, fmt::format("acceptance {}", info.acceptance));
         tally_.notFinite += info.reject == Reject::NotFinite && !extreme(trial_);
         if (info.reject != Reject::None) return;
@@ -126,6 +133,7 @@ private:
     Kernel kernel_;
     StructureTally& tally_;
     Chain chain_;
+    std::string next_;  ///< the state that the step ends with
     uint64_t trial_ = 0;
 };
 
