@@ -28,7 +28,7 @@ int open(const std::filesystem::path& path, int flags) {
     return file;
 }
 
-[[noreturn]] void failToWrite(const std::filesystem::path& file, int error) {
+[[noreturn]] void failToLock(const std::filesystem::path& file, int error) {
     fail(ExitCode::CannotWrite, "cannot write {}: {}", file.string(), std::generic_category().message(error));
 }
 
@@ -60,12 +60,12 @@ int writeHolder(int file) {
 
 FileLock FileLock::claim(const std::filesystem::path& file) {
     FileLock claimed(open(file, O_RDWR | O_CREAT));
-    if (!claimed.held()) failToWrite(file, errno);
+    if (!claimed.held()) failToLock(file, errno);
     const int error = lock(claimed.descriptor_, LOCK_EX | LOCK_NB);
     if (error == EWOULDBLOCK)
         fail(ExitCode::CannotWrite, "{} is in use by {}", file.parent_path().string(), holder(claimed.descriptor_));
     if (error) return FileLock(-1);
-    if (const int trouble = writeHolder(claimed.descriptor_)) failToWrite(file, trouble);
+    if (const int trouble = writeHolder(claimed.descriptor_)) failToLock(file, trouble);
     return claimed;
 }
 

@@ -138,7 +138,7 @@ void decodeSrgb(Image& image, std::size_t bytesPerValue) {
 }
 
 /// The bytes of a file of the format, made in memory, so that writing them is under our control.
-std::string encode(const char* format, const std::string& path, const OIIO::ImageSpec& spec, OIIO::TypeDesc type,
+std::string encode(const char* format, const std::string& path, const OIIO::ImageSpec& spec, const OIIO::TypeDesc& type,
                    const void* pixels) {
     configureLibrary();
     OIIO::Filesystem::IOVecOutput bytes;

@@ -41,9 +41,9 @@ void setCell(Sample& x, int cell) {
     x.u.append(NumberStream::Camera, Block{(cell + 0.5) / kCells, 0.5, 0.5, 0.5});
 }
 
-class ToyTarget : public Target {
+class GridTarget : public Target {
 public:
-    ToyTarget(Space space, const Scene& scene) : space_(space), tracing_(scene) {}
+    GridTarget(Space space, const Scene& scene) : space_(space), tracing_(scene) {}
 
     Space space() const override { return space_; }
     Tracing& tracing() override { return tracing_; }
@@ -138,9 +138,9 @@ public:
 };
 
 /// To a neighbouring cell, more often to the right.
-class Step : public ToyMutation {
+class ToyStep : public ToyMutation {
 public:
-    Step(int number, Space target, bool misstated) : ToyMutation(number, target), misstated_(misstated) {}
+    ToyStep(int number, Space target, bool misstated) : ToyMutation(number, target), misstated_(misstated) {}
     Space space() const override { return Space::Primary; }
     Proposal propose(const Sample& x, StepContext& context) const override {
         const bool right = choiceOf(context.random(), kChoices) < 5;
@@ -188,12 +188,12 @@ Enumeration enumerateKernel(Space space, bool misstated) {
         entries.push_back({"jump", kWeights[0], std::make_unique<Jump>(0, space, misstated)});
         entries.push_back({"swap", kWeights[1], std::make_unique<Swap>(1, space)});
     }
-    entries.push_back({"step", kWeights[2], std::make_unique<Step>(2, space, misstated && !onPaths)});
+    entries.push_back({"step", kWeights[2], std::make_unique<ToyStep>(2, space, misstated && !onPaths)});
     entries.push_back({"fresh", kWeights[3], std::make_unique<Fresh>(3, space)});
     const MutationMix mix(std::move(entries));
     Kernel kernel(mix);
     const AuditScene& scene = *auditScenes().front();
-    ToyTarget target(space, scene.scene);
+    GridTarget target(space, scene.scene);
     Recorder recorder;
     recorder.onPaths = onPaths;
 

@@ -6,7 +6,7 @@ namespace {
 /// How often a direction is drawn as path tracing does, rather than near the old one.
 constexpr double kWalkShare = 0.3;
 
-bool same(const Vertex& a, const Vertex& b) {
+bool samePlace(const Vertex& a, const Vertex& b) {
     return a.position == b.position && a.kind == b.kind && a.shape == b.shape;
 }
 
@@ -20,8 +20,8 @@ double angleBetween(const Vec3f& a, const Vec3f& b) {
 ProposalClass::ProposalClass(const Path& x, const Path& y) {
     const int k = x.length(), shift = y.length() - k;
     int l = -1, m = k + 1;
-    while (l < std::min(k, k + shift) && same(x[l + 1], y[l + 1])) ++l;
-    while (m - 1 > l && m - 1 + shift > l && same(x[m - 1], y[m - 1 + shift])) --m;
+    while (l < std::min(k, k + shift) && samePlace(x[l + 1], y[l + 1])) ++l;
+    while (m - 1 > l && m - 1 + shift > l && samePlace(x[m - 1], y[m - 1 + shift])) --m;
     kept = l, first = m, added = m + shift - l;
     for (int i = std::max(l, 0); i <= std::min(m + shift, y.length()); ++i)
         lobes += y[i].onSurface() ? "SRTN"[int(y[i].lobe)] : "SLPID"[int(y[i].kind)];
