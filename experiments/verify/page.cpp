@@ -15,7 +15,8 @@ constexpr const char* kStyle = R"(
 table { border-collapse: collapse; width: 100%; margin-top: 6px; }
 th, td { text-align: left; padding: 3px 12px 3px 0; vertical-align: top; border-bottom: 1px solid var(--rule); }
 th { color: var(--muted); font-weight: 400; font-size: 12px; }
-td.number { text-align: right; white-space: nowrap; }
+th:not(.number) { text-align: left; } td { white-space: normal; } td.number { text-align: right; white-space: nowrap; }
+th.number { text-align: right; } td:last-child:not(.short) { min-width: 24rem; } td.short { white-space: nowrap; }
 .passed { color: var(--better); } .rejected, .not-covered { color: var(--alarm); font-weight: 600; }
 .not-audited { color: var(--worse); } .reported { color: var(--muted); }
 .pictures { display: flex; flex-wrap: wrap; gap: 14px 22px; margin-top: 8px; }
@@ -151,7 +152,7 @@ std::string section(const SubjectReport& s) {
         pictures += densityPictures(f) + imagePictures(f);
     }
     return fmt::format("<section id=\"{0}-{1}\"><h2>{0} {1}</h2><p class=\"note\">{2}</p>{3}<div class=\"scroll\"><table><thead><tr><th>level</th><th>check</th>"
-                       "<th>outcome</th><th>statistic</th><th>p</th><th>samples</th><th>seconds</th><th></th></tr></thead><tbody>\n{4}</tbody></table></div>\n{5}</section>\n",
+                       "<th>outcome</th><th class=\"number\">statistic</th><th class=\"number\">p</th><th class=\"number\">samples</th><th class=\"number\">seconds</th><th></th></tr></thead><tbody>\n{4}</tbody></table></div>\n{5}</section>\n",
                        s.kind, escaped(s.name), escaped(s.replay), details.empty() ? "" : fmt::format("<div class=\"{}\"><ul>{}</ul></div>", s.rejected() ? "alarm" : "note", details),
                        rows, pictures);
 }
@@ -171,7 +172,7 @@ std::string overview(const Report& report) {
         rows += fmt::format("<tr><td><a href=\"#{0}-{1}\">{0} {1}</a></td>", s.kind, escaped(s.name));
         for (const std::string& column : columns) {
             const auto f = std::find_if(s.findings.begin(), s.findings.end(), [&](const Finding& x) { return fmt::format("{} {}", x.level, x.check) == column; });
-            rows += fmt::format("<td>{}</td>", f == s.findings.end() ? "" : outcomeOf(*f));
+            rows += fmt::format("<td class=\"short\">{}</td>", f == s.findings.end() ? "" : outcomeOf(*f));
         }
         rows += "</tr>\n";
     }

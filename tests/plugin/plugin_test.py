@@ -66,6 +66,14 @@ class PluginTest(unittest.TestCase):
         self.assertEqual(result["parameters"]["mutations"]["uniform_step"]["size"], 0.05)
         self.assertAlmostEqual(result["normalization"], 1, delta=0.1)
 
+    @unittest.skipUnless(os.environ.get("ULAM_TEST_LEVEL") == "full", "takes half a minute")
+    def test_it_is_audited(self):
+        done = self.ulam("verify", "--mutation", "uniform_step", "--plugin", "./libuniform_step.so", "--json", "--page", "audit.html")
+        findings = {f["check"]: f for f in json.loads(done.stdout)["subjects"][0]["findings"]}
+        self.assertEqual({f["outcome"] for f in findings.values()} - {"passed", "reported", "not audited"}, set())
+        self.assertEqual(findings["mixed invariance"]["outcome"], "passed")
+        self.assertIn("uniform_step", (self.folder / "audit.html").read_text(encoding="utf8"))
+
     def test_without_it_the_name_is_unknown(self):
         done = self.render("c.exr", {"uniform_step": {}}, expect=4)
         self.assertIn('"uniform_step"', done.stderr)
