@@ -5,7 +5,7 @@
 namespace ulam {
 namespace {
 
-Json defaultMutations() {
+Json pathMutations() {
     return {{"bidirectional", {{"weight", 1}}}, {"lens", {{"weight", 1}}}};
 }
 
@@ -14,7 +14,7 @@ public:
     struct Parameters {
         PathLimits limits;
         ChainParameters chains;
-        JsonNode mutations{defaultMutations()};
+        JsonNode mutations{pathMutations()};
         template <class V>
         void describe(V& v) {
             limits.describe(v);

@@ -38,7 +38,7 @@ public:
         const int column = int(std::floor(g.x)), row = int(std::floor(g.y));
         const Cells c = cellsAround(from);
         if (column < c.column0 || column > c.column1 || row < c.row0 || row > c.row1) return 0;
-        if (std::abs(g.x - column - 0.5) > 0.5 * opening_ || std::abs(g.y - row - 0.5) > 0.5 * opening_) return 0;
+        if (std::abs(g.x - (column + 0.5)) > 0.5 * opening_ || std::abs(g.y - (row + 0.5)) > 0.5 * opening_) return 0;
         return distance * distance / (std::abs(slope) * area_ * c.count());
     }
 

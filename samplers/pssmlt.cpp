@@ -6,7 +6,7 @@
 namespace ulam {
 namespace {
 
-Json defaultMutations() {
+Json primaryMutations() {
     return {{"large_step", {{"weight", 0.3}}}, {"kelemen_step", {{"weight", 0.7}}}};
 }
 
@@ -17,7 +17,7 @@ public:
         ChainParameters chains;
         std::string base = "bdpt";
         std::string deposit = "kelemen";
-        JsonNode mutations{defaultMutations()};
+        JsonNode mutations{primaryMutations()};
         template <class V>
         void describe(V& v) {
             limits.describe(v);

@@ -13,8 +13,6 @@
 #include <utility>
 #include <vector>
 
-#include "core/base/error.h"
-
 namespace ulam {
 namespace {
 
@@ -33,8 +31,8 @@ public:
     Descriptor& operator=(const Descriptor&) = delete;
 
     int number() const { return number_; }
-    /// False with errno where the system reports a late write error.
-    bool close() { return ::close(std::exchange(number_, -1)) == 0; }
+    /// False with errno where the system reports a late write error. Interrupted, a file is closed all the same.
+    bool close() { return ::close(std::exchange(number_, -1)) == 0 || errno == EINTR; }
 
 private:
     int number_;
@@ -42,6 +40,29 @@ private:
 
 [[noreturn]] void failToWrite(const std::filesystem::path& path, int error) {
     fail(ExitCode::CannotWrite, "cannot write {}: {}", path.string(), reason(error));
+}
+
+int openFile(const std::filesystem::path& path, int flags) {
+    int number = -1;
+    do number = ::open(path.c_str(), flags | O_CLOEXEC, 0666);
+    while (number < 0 && errno == EINTR);
+    return number;
+}
+
+[[noreturn]] void failToRead(const std::filesystem::path& path, int error) {
+    const std::string message = fmt::format("cannot read {}: {}", path.string(), reason(error));
+    if (error == ENOENT || error == ENOTDIR || error == EISDIR) throw Error(ExitCode::InputMissing, message);
+    throw UnreadableFile(ExitCode::InputMissing, message);
+}
+
+/// Zero, or the error.
+int flush(int file) {
+    while (::fsync(file) != 0) {
+        // Pipes and devices have nothing to flush and say EINVAL or ENOTSUP.
+        if (errno == EINVAL || errno == ENOTSUP) return 0;
+        if (errno != EINTR) return errno;
+    }
+    return 0;
 }
 
 /// Zero, or the error.
@@ -60,8 +81,7 @@ int writeAll(int file, std::string_view bytes) {
 int writeFlushClose(Descriptor& file, std::span<const std::string_view> parts) {
     for (const std::string_view part : parts)
         if (const int error = writeAll(file.number(), part)) return error;
-    // Pipes and devices have nothing to flush and say EINVAL or ENOTSUP.
-    if (::fsync(file.number()) != 0 && errno != EINVAL && errno != ENOTSUP) return errno;
+    if (const int error = flush(file.number())) return error;
     return file.close() ? 0 : errno;
 }
 
@@ -78,7 +98,7 @@ std::filesystem::path behindLinks(const std::filesystem::path& path) {
     return target;
 }
 
-std::string temporaryName(pid_t process, unsigned number) {
+std::string temporaryNameOf(pid_t process, unsigned number) {
     return fmt::format(".ulam-{}-{}.tmp", process, number);
 }
 
@@ -92,15 +112,15 @@ bool isAbandoned(const std::string& name) {
     const char* const dash = std::from_chars(name.data() + prefix.size(), end, process).ptr;
     if (dash == end || process <= 0) return false;
     std::from_chars(dash + 1, end, number);
-    if (name != temporaryName(process, number)) return false;
+    if (name != temporaryNameOf(process, number)) return false;
     return process == ::getpid() || (::kill(process, 0) != 0 && errno == ESRCH);
 }
 
 }  // namespace
 
 std::string readFile(const std::filesystem::path& path, std::size_t maxBytes) {
-    const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
-    if (file.number() < 0) fail(ExitCode::InputMissing, "cannot read {}: {}", path.string(), reason(errno));
+    const Descriptor file(openFile(path, O_RDONLY));
+    if (file.number() < 0) failToRead(path, errno);
     std::string bytes;
     struct stat status {};
     if (::fstat(file.number(), &status) == 0 && S_ISREG(status.st_mode))
@@ -111,7 +131,7 @@ std::string readFile(const std::filesystem::path& path, std::size_t maxBytes) {
         if (count == 0) return bytes;
         if (count < 0) {
             if (errno == EINTR) continue;
-            fail(ExitCode::InputMissing, "cannot read {}: {}", path.string(), reason(errno));
+            failToRead(path, errno);
         }
         if (static_cast<std::size_t>(count) > maxBytes - bytes.size())
             fail(ExitCode::InvalidConfig, "{} holds more than {} bytes", path.string(), maxBytes);
@@ -129,20 +149,18 @@ void writeFileAtomically(const std::filesystem::path& path, std::span<const std:
     const bool exists = ::stat(target.c_str(), &status) == 0;
     if (exists && S_ISDIR(status.st_mode)) failToWrite(path, EISDIR);
     if (exists && !S_ISREG(status.st_mode)) {
-        Descriptor file(::open(target.c_str(), O_WRONLY | O_CLOEXEC));
+        Descriptor file(openFile(target, O_WRONLY));
         if (file.number() < 0) failToWrite(path, errno);
         if (const int error = writeFlushClose(file, parts)) failToWrite(path, error);
         return;
     }
 
-    // Short, so that it fits wherever the final name does; taken names are left over from a killed process.
-    static std::atomic<unsigned> counter = 0;
     const auto folder = target.has_parent_path() ? target.parent_path() : std::filesystem::path(".");
     std::filesystem::path temporary;
     int number = -1;
     do {
-        temporary = folder / temporaryName(::getpid(), counter++);
-        number = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        temporary = folder / temporaryName();
+        number = openFile(temporary, O_WRONLY | O_CREAT | O_EXCL);
     } while (number < 0 && errno == EEXIST);
     Descriptor file(number);
     if (number < 0) failToWrite(path, errno);
@@ -154,19 +172,31 @@ void writeFileAtomically(const std::filesystem::path& path, std::span<const std:
         failToWrite(path, error);
     }
     // The new name itself reaches the disk with the folder; not every file system can flush one, and the data is safe.
-    const Descriptor directory(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-    if (directory.number() >= 0) ::fsync(directory.number());
+    const Descriptor directory(openFile(folder, O_RDONLY | O_DIRECTORY));
+    if (directory.number() >= 0) flush(directory.number());
 }
 
-void removeTemporaries(const std::filesystem::path& folder) {
+void requireReadable(const std::filesystem::path& path) {
+    if (Descriptor(openFile(path, O_RDONLY)).number() < 0) failToRead(path, errno);
+}
+
+std::string temporaryName() {
+    // Short, so that it fits wherever the final name does; taken names are left over from a killed process.
+    static std::atomic<unsigned> counter = 0;
+    return temporaryNameOf(::getpid(), counter++);
+}
+
+void removeTemporaries(const std::filesystem::path& folder, Below below) {
     namespace fs = std::filesystem;
     std::error_code error, ignored;
     std::vector<fs::path> abandoned;
     fs::recursive_directory_iterator entry(folder, fs::directory_options::skip_permission_denied, error);
-    for (; !error && entry != fs::recursive_directory_iterator(); entry.increment(error))
-        if (entry->is_regular_file(ignored) && isAbandoned(entry->path().filename().string()))
-            abandoned.push_back(entry->path());
-    for (const fs::path& file : abandoned) fs::remove(file, ignored);
+    for (; !error && entry != fs::recursive_directory_iterator(); entry.increment(error)) {
+        const bool found = isAbandoned(entry->path().filename().string());
+        if (found) abandoned.push_back(entry->path());
+        if (found || below == Below::No) entry.disable_recursion_pending();
+    }
+    for (const fs::path& path : abandoned) fs::remove_all(path, ignored);
 }
 
 }  // namespace ulam

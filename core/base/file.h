@@ -8,10 +8,19 @@
 #include <string>
 #include <string_view>
 
+#include "core/base/error.h"
+
 namespace ulam {
 
-/// The bytes of a file. Fails with InputMissing and the system's reason when it cannot be opened or read, and with
-/// InvalidConfig when it holds more than `maxBytes`.
+/// A file that is there and cannot be read now, for want of permission or for an error of the disk. That does not mean that
+/// it is damaged. Its code is InputMissing.
+class UnreadableFile : public Error {
+public:
+    using Error::Error;
+};
+
+/// The bytes of a file. Fails with InputMissing and the system's reason when there is none, with UnreadableFile when it
+/// cannot be read, and with InvalidConfig when it holds more than `maxBytes`.
 std::string readFile(const std::filesystem::path& path, std::size_t maxBytes = std::numeric_limits<std::size_t>::max());
 
 /// Replaces a file so that readers, and a run continued after a kill, see all of the old bytes or all of the new ones:
@@ -22,8 +31,16 @@ void writeFileAtomically(const std::filesystem::path& path, std::string_view byt
 /// The same of parts that follow each other.
 void writeFileAtomically(const std::filesystem::path& path, std::span<const std::string_view> parts);
 
-/// Removes the temporary files in a folder, and in the folders below, that processes left when they were killed while
-/// writing. Those of other processes that still run stay, and so does what cannot be removed.
-void removeTemporaries(const std::filesystem::path& folder);
+/// Fails like readFile where a file cannot be opened.
+void requireReadable(const std::filesystem::path& path);
+
+/// A name that this process uses once, for a file or folder that is renamed when it is whole.
+std::string temporaryName();
+
+enum class Below { No, Yes };
+
+/// Removes the temporary files and folders in a folder, and on demand in the folders below, that processes left when
+/// they were killed while writing. Those of other processes that still run stay, and so does what cannot be removed.
+void removeTemporaries(const std::filesystem::path& folder, Below below = Below::Yes);
 
 }  // namespace ulam

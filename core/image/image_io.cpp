@@ -62,6 +62,7 @@ std::unique_ptr<OIIO::ImageInput> openImage(const std::string& path) {
     if (!std::filesystem::is_regular_file(path, ignored)) {
         fail(ExitCode::InvalidConfig, "{}: expected an image file; found something that is no file", path);
     }
+    requireReadable(path);
 
     auto input = OIIO::ImageInput::create(ending);
     if (!input) fail(ExitCode::InvalidConfig, "{}: {}", path, oneLine(OIIO::geterror()));
@@ -114,7 +115,7 @@ void requireFinite(const std::string& path, const Image& image, ExitCode code, f
 void decodeSrgb(Image& image, std::size_t bytesPerValue) {
     std::vector<float> table(bytesPerValue == 1 ? 256 : 65536);
     const auto largest = static_cast<float>(table.size() - 1);
-    for (std::size_t i = 0; i < table.size(); ++i) table[i] = static_cast<float>(srgbToLinear(i / largest));
+    for (std::size_t i = 0; i < table.size(); ++i) table[i] = static_cast<float>(srgbToLinear(static_cast<float>(i) / largest));
     for (Rgb& p : image.pixels) {
         for (float* v : {&p.x, &p.y, &p.z}) *v = table[static_cast<std::size_t>(*v * largest + 0.5f)];
     }

@@ -9,10 +9,10 @@
 namespace ulam {
 namespace {
 
-using Plane = std::vector<double>;
+using Field = std::vector<double>;
 
-Plane shownLuminance(const Image& image) {
-    Plane plane;
+Field shownLuminance(const Image& image) {
+    Field plane;
     plane.reserve(image.pixels.size());
     for (const Rgb& p : image.pixels) plane.push_back(linearToSrgb(std::clamp(luminance(Spectrum(p)), 0.0, 1.0)));
     return plane;
@@ -27,9 +27,9 @@ std::array<double, 2 * kSsimRadius + 1> windowWeights() {
 }
 
 /// Weighted means along `count` lines of `length` pixels that lie `stride` apart; lines start `lineStride` apart.
-Plane average(const Plane& in, int count, int lineStride, int length, int stride) {
+Field average(const Field& in, int count, int lineStride, int length, int stride) {
     static const auto weights = windowWeights();
-    Plane out(in.size());
+    Field out(in.size());
     for (int line = 0; line < count; ++line) {
         const std::size_t start = static_cast<std::size_t>(line) * lineStride;
         for (int i = 0; i < length; ++i) {
@@ -49,20 +49,20 @@ Plane average(const Plane& in, int count, int lineStride, int length, int stride
 
 std::vector<double> ssimErrorMap(const Image& image, const Image& reference) {
     const int width = image.width, height = image.height;
-    const auto smooth = [&](const Plane& in) {
+    const auto smooth = [&](const Field& in) {
         return average(average(in, height, width, width, 1), width, 1, height, width);
     };
-    const auto product = [](const Plane& a, const Plane& b) {
-        Plane result(a.size());
+    const auto product = [](const Field& a, const Field& b) {
+        Field result(a.size());
         std::transform(a.begin(), a.end(), b.begin(), result.begin(), std::multiplies<>());
         return result;
     };
-    const Plane x = shownLuminance(image), y = shownLuminance(reference);
-    const Plane meanX = smooth(x), meanY = smooth(y);
-    const Plane meanXX = smooth(product(x, x)), meanYY = smooth(product(y, y)), meanXY = smooth(product(x, y));
+    const Field x = shownLuminance(image), y = shownLuminance(reference);
+    const Field meanX = smooth(x), meanY = smooth(y);
+    const Field meanXX = smooth(product(x, x)), meanYY = smooth(product(y, y)), meanXY = smooth(product(x, y));
 
     constexpr double c1 = kSsimK1 * kSsimK1, c2 = kSsimK2 * kSsimK2;
-    Plane error(x.size());
+    Field error(x.size());
     for (std::size_t i = 0; i < x.size(); ++i) {
         const double mx = meanX[i], my = meanY[i];
         const double varX = meanXX[i] - mx * mx, varY = meanYY[i] - my * my, cov = meanXY[i] - mx * my;

@@ -4,6 +4,18 @@
 
 namespace ulam {
 
+namespace {
+
+double sumOf(const PrimaryVector& u) {
+    double sum = 0;
+    for (const NumberStream s : {NumberStream::Light, NumberStream::Camera, NumberStream::Connect})
+        for (int i = 0; i < u.size(s); ++i)
+            for (const double x : u(s, i)) sum += x;
+    return sum;
+}
+
+}  // namespace
+
 void Kernel::enter(Chain& chain) const {
     chain.suitability.resize(mix_.size());
     chain.z = mix_.suitabilities(chain.x, chain.suitability);
@@ -21,6 +33,7 @@ double Kernel::logRatio(const Chain& chain, int mutation, const Proposal& p, Spa
 
 void Kernel::step(Chain& chain, Target& target, StepContext& context, StepObserver& observer) {
     ++chain.step;
+    takeCause();  // of what came before
     StepInfo info;
     if (!(chain.z > 0)) {
         observer.observe(chain, Proposal(Reject::ZeroTarget), info);
@@ -39,7 +52,8 @@ void Kernel::step(Chain& chain, Target& target, StepContext& context, StepObserv
         // The technique is an auxiliary variable with law c(·|x), drawn afresh.
         const double c = target.redrawTechnique(chain.x, context.random, !mutation.isLargeStep());
         if (!std::isfinite(c)) {
-            info.reject = Reject::NotInvertible;
+            info.cause = takeCause();
+            info.reject = info.cause == Cause::None ? Reject::NotInvertible : Reject::NotFinite;
             observer.observe(chain, Proposal(info.reject), info);
             return;
         }
@@ -50,7 +64,9 @@ void Kernel::step(Chain& chain, Target& target, StepContext& context, StepObserv
     info.reject = proposal.reject;
     double zY = 0;
     if (info.reject == Reject::None) {
-        if (primary) {
+        if (primary && !checkFinite(Cause::Mutation, sumOf(proposal.y.u))) {
+            info.reject = Reject::NotFinite;
+        } else if (primary) {
             proposal.y.technique = chain.x.technique;
             info.reject = target.evaluateNumbers(proposal.y, context.random);
             if (info.reject == Reject::None && onPaths) logTechnique += target.logTechnique(proposal.y);
@@ -62,11 +78,16 @@ void Kernel::step(Chain& chain, Target& target, StepContext& context, StepObserv
     if (info.reject == Reject::None) {
         zY = mix_.suitabilities(proposal.y, scratch_);
         const double suitabilityY = scratch_[size_t(info.mutation)];
-        if (suitabilityY > 0) {
+        if (checkFinite(Cause::Mutation, zY) && suitabilityY > 0) {
             const double r = logRatio(chain, info.mutation, proposal, target.space(), logTechnique, suitabilityY, zY);
-            if (std::isnan(r) || r == std::numeric_limits<double>::infinity()) info.reject = Reject::NotFinite;
-            else info.acceptance = r >= 0 ? 1 : std::exp(r);
+            constexpr double kImpossible = -std::numeric_limits<double>::infinity();  // to come back, say: α = 0
+            if (r == kImpossible || checkFinite(Cause::Mutation, r)) info.acceptance = r >= 0 ? 1 : std::exp(r);
         }
+    }
+    info.cause = takeCause();
+    if (info.cause != Cause::None) {
+        info.reject = Reject::NotFinite;
+        info.acceptance = 0;
     }
     proposal.reject = info.reject;
     info.accepted = info.acceptance > 0 && context.random() < info.acceptance;

@@ -1,6 +1,7 @@
 #pragma once
 // The Metropolis–Hastings kernel: the one place where proposals are accepted or rejected.
 
+#include "core/base/non_finite.h"
 #include "core/mcmc/mutation_mix.h"
 #include "core/mcmc/target.h"
 
@@ -27,6 +28,7 @@ struct StepInfo {
     double acceptance = 0;  ///< α
     bool accepted = false;
     Reject reject = Reject::None;
+    Cause cause = Cause::None;  ///< of NotFinite
 };
 
 /// Sees the state before, the proposal (meaningful if there is one) and what happened; the chain has not moved yet.

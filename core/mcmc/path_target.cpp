@@ -21,7 +21,8 @@ public:
     Reject evaluatePath(Sample& y) override {
         const Spectrum f = y.factors.contribution();
         const double pi = importance_(f);
-        if (!(pi > 0)) return pi == 0 ? Reject::ZeroTarget : Reject::NotFinite;
+        if (!checkFinite(Cause::Target, pi)) return Reject::NotFinite;
+        if (!(pi > 0)) return Reject::ZeroTarget;
         const auto response = scene_.sensor->respond(y.path.camera(), -y.factors.edge[y.path.length() - 1].direction);
         if (!(response.importance > 0)) return Reject::OffScreen;
         y.logTarget = std::log(pi);

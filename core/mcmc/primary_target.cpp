@@ -15,7 +15,8 @@ public:
         y.splats.clear();
         y.path.resize(0);
         const double sum = trace(y.u, random, [&](const Contribution& c) { deposit(c, y.splats); });
-        if (!(sum > 0)) return sum == 0 ? Reject::ZeroTarget : Reject::NotFinite;
+        if (!checkFinite(Cause::Target, sum)) return Reject::NotFinite;
+        if (!(sum > 0)) return Reject::ZeroTarget;
         y.logTarget = std::log(sum);
         for (int i = 0; i < y.splats.size(); ++i) y.splats[i].value /= sum;
         return Reject::None;

@@ -130,6 +130,7 @@ void sampleDirectLight(const Scene& scene, const Vertex& from, const Block& numb
         light.vertex[0] = emitter.sampleDirect(context, from, u);
         light.forward[0] = scene.emitterChoice().probability(e) * emitter.directPdf(context, from, light.vertex[0]);
     });
+    if (!checkFinite(Cause::Light, light.forward[0])) light.forward[0] = 0;
     light.throughput[0] = Spectrum(1 / light.forward[0]);
     light.backward[0] = light.albedo[0] = 0;
     light.size = 1;

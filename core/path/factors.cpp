@@ -15,7 +15,11 @@ Spectrum PathFactors::contribution() const {
 bool evaluate(const Scene& scene, const Path& path, int first, int last, PathFactors& factors) {
     for (int i = first; i < last; ++i) {
         factors.edge[i] = Edge(path[i], path[i + 1]);
-        if (!(factors.edge[i].geometry() > 0)) return false;
+        if (!(factors.edge[i].geometry() > 0)) {
+            const Vec3f sum = path[i].position + path[i + 1].position;
+            checkFinite(Cause::Geometry, sum.x + sum.y + sum.z);
+            return false;
+        }
     }
     const int k = path.length();
     if (k == 1 && !showsItself(path[0])) return false;

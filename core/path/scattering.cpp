@@ -13,6 +13,11 @@ inline double shadingCorrection(const Vertex& v, const Vec3f& toLight) {
     return g > 0 ? std::abs(dot(v.shadingNormal, toLight)) / double(g) : 0;
 }
 
+/// None where a factor is not finite.
+inline Scattering checked(const Scattering& s) {
+    return checkFinite(Cause::Bsdf, s.f.x + s.f.y + s.f.z + s.pdfToCamera + s.pdfToLight) ? s : Scattering::none();
+}
+
 }  // namespace
 
 Scattering scatter(const Scene& scene, const Vertex& v, Lobe lobe, const Vec3f& toLight, const Vec3f& toCamera) {
@@ -20,7 +25,7 @@ Scattering scatter(const Scene& scene, const Vertex& v, Lobe lobe, const Vec3f& 
         const Imath::V3d l(frame.toLocal(toLight)), c(frame.toLocal(toCamera));
         const Spectrum f = bsdf.eval(l, c, lobe);
         if (isBlack(f)) return Scattering::none();
-        return {f * shadingCorrection(v, toLight), bsdf.pdf(l, c, lobe), bsdf.pdf(c, l, lobe)};
+        return checked({f * shadingCorrection(v, toLight), bsdf.pdf(l, c, lobe), bsdf.pdf(c, l, lobe)});
     });
 }
 
@@ -29,7 +34,7 @@ bool sampleScattering(const Scene& scene, Vertex& v, const Vec3f& from, From wal
     return withBsdf(scene, v, dot(v.shadingNormal, from), [&](const auto& bsdf, const LocalFrame& frame) {
         const Vec3f known = frame.toLocal(from);
         const auto sampled = lobe ? bsdf.sampleLobe(known, *lobe, u) : bsdf.sample(known, u);
-        if (!sampled) return false;
+        if (!sampled || !checkFinite(Cause::Bsdf, sampled->to.x + sampled->to.y + sampled->to.z)) return false;
         v.lobe = sampled->lobe;
         const Imath::V3d dk(known), dt(sampled->to);
         const auto& l = walk == From::Light ? dk : dt;
@@ -38,8 +43,8 @@ bool sampleScattering(const Scene& scene, Vertex& v, const Vec3f& from, From wal
         if (isBlack(f)) return false;
         out.direction = frame.toWorld(sampled->to);
         const Vec3f& toLight = walk == From::Light ? from : out.direction;
-        out.scattering = {f * shadingCorrection(v, toLight), bsdf.pdf(l, c, v.lobe), bsdf.pdf(c, l, v.lobe)};
-        return true;
+        out.scattering = checked({f * shadingCorrection(v, toLight), bsdf.pdf(l, c, v.lobe), bsdf.pdf(c, l, v.lobe)});
+        return !isBlack(out.scattering.f);
     });
 }
 
@@ -63,7 +68,8 @@ bool invertScattering(const Scene& scene, const Vertex& v, const Vec3f& from, co
 double albedoAt(const Scene& scene, const Vertex& v) {
     const Material& m = scene.materialAt(v);
     const auto albedo = [&](const Coating& coating) {
-        return withCoating(scene, v, coating, [](const auto& bsdf) { return bsdf.albedo(); });
+        const double value = withCoating(scene, v, coating, [](const auto& bsdf) { return bsdf.albedo(); });
+        return checkFinite(Cause::Bsdf, value) ? value : 0;
     };
     return m.back ? std::max(albedo(m.front), albedo(*m.back)) : albedo(m.front);
 }

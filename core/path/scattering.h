@@ -1,6 +1,7 @@
 #pragma once
 // The BSDFs as paths see them: light flows from the light's side to the camera's side, whichever way a walk goes.
 
+#include "core/base/non_finite.h"
 #include "core/path/measure.h"
 #include "core/path/path.h"
 
@@ -62,10 +63,12 @@ struct Emission {
 inline Emission emission(const Scene& scene, const Vertex& x0, const Vec3f& w) {
     const uint32_t e = scene.emitterAt(x0);
     if (e == kNone) return {};
-    return dispatch(scene.emitters[e], [&](const auto& emitter) -> Emission {
+    const Emission emitted = dispatch(scene.emitters[e], [&](const auto& emitter) -> Emission {
         const EmissionContext c = scene.emission(e);
         return {emitter.radiance(c, x0, w), emitter.directionPdf(c, x0, w)};
     });
+    const Spectrum& l = emitted.radiance;
+    return checkFinite(Cause::Light, l.x + l.y + l.z + emitted.pdf) ? emitted : Emission{};
 }
 
 /// Density of x_0 as the start of a walk: choice of the emitter times its density of positions.
@@ -80,8 +83,9 @@ inline double emissionPositionPdf(const Scene& scene, const Vertex& x0) {
 inline double directLightPdf(const Scene& scene, const Vertex& x1, const Vertex& x0) {
     const uint32_t e = scene.emitterAt(x0);
     if (e == kNone) return 0;
-    return scene.emitterChoice().probability(e) *
-           dispatch(scene.emitters[e], [&](const auto& emitter) { return emitter.directPdf(scene.emission(e), x1, x0); });
+    const double pdf = scene.emitterChoice().probability(e) *
+                       dispatch(scene.emitters[e], [&](const auto& emitter) { return emitter.directPdf(scene.emission(e), x1, x0); });
+    return checkFinite(Cause::Light, pdf) ? pdf : 0;
 }
 
 }  // namespace ulam

@@ -1,6 +1,7 @@
 #pragma once
 // Rays between vertices: where a walk goes next, and whether two vertices see each other.
 
+#include "core/base/non_finite.h"
 #include "core/path/measure.h"
 #include "core/scene/scene.h"
 
@@ -26,7 +27,8 @@ public:
         Hit hit;
         if (scene_->rays().intersect(origin, w, hit)) {
             scene_->vertexAt(origin, w, hit, out);
-            return true;
+            const Vec3f sum = out.position + out.normal + out.shadingNormal;
+            return checkFinite(Cause::Geometry, sum.x + sum.y + sum.z);
         }
         if (scene_->environment == kNone) return false;
         out = Vertex{};

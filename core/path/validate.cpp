@@ -88,8 +88,8 @@ private:
         const uint32_t e = scene_.emitterAt(v);
         if (e >= scene_.emitters.size()) return fmt::format("{} that belongs to no emitter", name(v.kind));
         const Emitter& emitter = scene_.emitters[e];
-        const auto* given = dispatch(emitter, []<class E>(const E& e) -> const DeltaPosition* {
-            if constexpr (std::is_base_of_v<DeltaPosition, E>) return &e;
+        const auto* given = dispatch(emitter, []<class E>(const E& concrete) -> const DeltaPosition* {
+            if constexpr (std::is_base_of_v<DeltaPosition, E>) return &concrete;
             else return nullptr;
         });
         if (given && v.position != given->position)

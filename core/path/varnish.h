@@ -65,7 +65,7 @@ private:
     template <class T>
     Direction<T> inside(const Direction<T>& w) const {
         using std::sqrt;
-        const T scale(1 / ior());
+        const auto scale = T(1 / ior());
         return {w.x * scale, w.y * scale, sqrt(T(1) - (T(1) - w.z * w.z) * (scale * scale))};
     }
     /// The part of the light from outside that reaches what is nested.

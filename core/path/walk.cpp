@@ -55,9 +55,10 @@ void walkFromLight(Tracing& tracing, const PathLimits& limits, int vertices, Num
         p.size = 1;
         if (vertices > 1) ray = emitter.sampleDirection(context, p.vertex[0], numbers(NumberStream::Light, 1));
     });
-    if (vertices < 2) return;
+    if (!checkFinite(Cause::Light, p.forward[0])) p.size = 0;
+    if (p.size == 0 || vertices < 2) return;
     const Emission e0 = emission(scene, p.vertex[0], ray.direction);
-    if (!(ray.pdf > 0) || isBlack(e0.radiance)) return;
+    if (!(ray.pdf > 0) || !checkFinite(Cause::Light, ray.pdf + ray.direction.x + ray.direction.y + ray.direction.z) || isBlack(e0.radiance)) return;
     const bool hit = p.vertex[0].atInfinity() ? tracing.nextFrom(ray.origin, ray.direction, p.vertex[1])
                                             : tracing.next(p.vertex[0], ray.direction, p.vertex[1]);
     if (!hit || !p.vertex[1].onSurface()) return;

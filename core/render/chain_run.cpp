@@ -54,6 +54,7 @@ struct ChainRun::Worker : StepObserver {
 
     void observe(const Chain& before, const Proposal& proposal, const StepInfo& info) override {
         last = info.mutation;
+        cause = info.cause;
         if (info.mutation < 0) {
             pending += 1;
             ++nullSteps;
@@ -115,6 +116,7 @@ struct ChainRun::Worker : StepObserver {
 
     void take(Worker& other) {
         film.take(other.film);
+        nonFinite.take(other.nonFinite);
         for (size_t i = 0; i < statistics.size(); ++i) {
             statistics[i].merge(other.statistics[i]);
             other.statistics[i] = {};
@@ -128,7 +130,7 @@ struct ChainRun::Worker : StepObserver {
     }
     template <class Archive>
     void archive(Archive& a) {
-        a(film, statistics, featureEnergy, jumps, nullSteps);
+        a(film, nonFinite, statistics, featureEnergy, jumps, nullSteps);
     }
 
     const ChainRun& run;
@@ -136,6 +138,7 @@ struct ChainRun::Worker : StepObserver {
     Kernel kernel;
     Film film;
     SplatQueue splats{film};
+    NonFiniteLog nonFinite;
     std::vector<MutationStatistics> statistics;
     std::vector<FixedSum> featureEnergy;
     double largeStepProbability;
@@ -144,6 +147,7 @@ struct ChainRun::Worker : StepObserver {
     double pending = 0;          ///< weight its current state is still to be deposited with
     uint32_t feature = kNone;
     int last = -1;
+    Cause cause = Cause::None;  ///< of the last step
 };
 
 ChainRun::ChainRun(const RunContext& context, const ChainParameters& parameters, const PathLimits& limits, MutationMix mix, Deposit deposit,
@@ -192,16 +196,18 @@ bool ChainRun::weigh(const BootstrapNumbers& numbers, uint64_t last, const StopF
     const uint64_t first = weights.size();
     if (first >= last) return true;
     weights.resize(last);
-    std::atomic<uint64_t> notFinite = 0;
+    const auto kind = &numbers == &pilotNumbers_ ? NonFiniteEvent::Kind::Pilot : NonFiniteEvent::Kind::Bootstrap;
     const uint64_t end = forEachChunk(context_.workers, first, last, 256, stop, [&](int worker, uint64_t from, uint64_t to) {
-        Target& target = *workers_[size_t(worker)]->target;
+        Worker& w = *workers_[size_t(worker)];
         for (uint64_t i = from; i < to; ++i) {
-            weights[i] = numbers.with(i, [&](Random& random) { return target.bootstrapWeight(random); });
-            if (!std::isfinite(weights[i])) weights[i] = 0, ++notFinite;
+            takeCause();  // of what came before
+            weights[i] = numbers.with(i, [&](Random& random) { return w.target->bootstrapWeight(random); });
+            if (!checkFinite(Cause::Target, weights[i])) weights[i] = 0;
+            if (const Cause cause = takeCause(); cause != Cause::None) [[unlikely]]
+                w.nonFinite.add({.kind = kind, .unit = i, .cause = name(cause)});
         }
     });
     weights.resize(end);
-    bootstrapNotFinite_ += notFinite;
     return end == last;
 }
 
@@ -309,7 +315,10 @@ void ChainRun::work(int worker, uint64_t begin, uint64_t end) {
     w.pending = 0;
     w.feature = chain.feature;
     try {
-        for (uint64_t i = begin; i < end; ++i) i % kTimedEvery == 0 ? timedStep(w, chain) : step(w, chain, w);
+        for (uint64_t i = begin; i < end; ++i) {
+            i % kTimedEvery == 0 ? timedStep(w, chain) : step(w, chain, w);
+            if (w.cause != Cause::None) [[unlikely]] logNonFinite(w, chain, i);
+        }
     } catch (...) {
         failed_ = true;
         throw;
@@ -325,6 +334,11 @@ void ChainRun::step(Worker& w, Chain& chain, StepObserver& observer) {
     Random random(context_.key, chain.index, chain.step);
     StepContext context{random, w.target->tracing(), limits_};
     w.kernel.step(chain, *w.target, context, observer);
+}
+
+void ChainRun::logNonFinite(Worker& w, const Chain& chain, uint64_t unit) {
+    const std::string of = w.cause == Cause::Mutation ? " " + mix_[size_t(w.last)].name : "";
+    w.nonFinite.add({NonFiniteEvent::Kind::Step, unit, chain.index, chain.step, name(w.cause) + of});
 }
 
 void ChainRun::timedStep(Worker& w, Chain& chain) {
@@ -354,7 +368,7 @@ template <class Archive>
 void ChainRun::archive(Archive& a) {
     uint64_t traced = rays(), chains = chains_.size();
     a(traced, pilot_, weights_, pilotGoal_, bootstrapGoal_, pilotSeconds_, plan_, bootstrap_, pilotNormalization_, pilotSamples_,
-      bootstrapNotFinite_, seedsLost_, gathered(), chains);
+      seedsLost_, gathered(), chains);
     if (traced > rays()) raysBefore_ = traced;
     while (chains_.size() < chains) chains_.push_back(std::make_unique<ChainSlot>());
     for (auto& slot : chains_) a(*slot);
@@ -368,14 +382,9 @@ void ChainRun::report(uint64_t units, RenderStatistics& s) {
     s.normalization = bootstrap_.mean;
     s.normalizationStandardError = bootstrap_.standardError;
     const Worker& all = gathered();
-    for (size_t i = 0; i < mix_.size(); ++i) {
-        s.mutationStatistics[mix_[i].name] = all.statistics[i];
-        const uint64_t bad = all.statistics[i].rejected[size_t(Reject::NotFinite)];
-        if (bad > 0) s.nonFinite["mutation " + mix_[i].name] += bad;
-    }
-    if (all.film.nonFinite() > 0) s.nonFinite["deposit"] += all.film.nonFinite();
+    for (size_t i = 0; i < mix_.size(); ++i) s.mutationStatistics[mix_[i].name] = all.statistics[i];
+    s.nonFinite = all.nonFinite;
     s.featureJumps = all.jumps;
-    if (bootstrapNotFinite_ > 0) s.nonFinite["bootstrap"] = bootstrapNotFinite_;
     for (const FixedSum& e : all.featureEnergy) s.featureEnergy.push_back(units > 0 ? e.value() * bootstrap_.mean / double(units) : 0);
     for (const auto& slot : chains_) s.traces.push_back(slot->trace);
     s.diagnostics["pilot_samples"] = pilotSamples_;

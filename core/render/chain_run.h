@@ -71,6 +71,7 @@ private:
     bool startChain(Worker& worker, const BootstrapNumbers& numbers, const Start& start, Chain& chain);
     void seedChains();
     void step(Worker& worker, Chain& chain, StepObserver& observer);
+    void logNonFinite(Worker& worker, const Chain& chain, uint64_t unit);
     void timedStep(Worker& worker, Chain& chain);
 
     RunContext context_;
@@ -89,7 +90,7 @@ private:
     std::optional<SeedingPlan> plan_;  ///< none where the size of the bootstrap is given
     WeightMoments bootstrap_;
     double pilotNormalization_ = 0;  ///< b from samples that seed nothing
-    uint64_t pilotSamples_ = 0, bootstrapNotFinite_ = 0, seedsLost_ = 0;
+    uint64_t pilotSamples_ = 0, seedsLost_ = 0;
     uint64_t raysBefore_ = 0;  ///< traced before the run was restored
     std::atomic<bool> failed_ = false;  ///< a step threw; workers that wait for its chain give up
 };

@@ -3,6 +3,7 @@
 #include "core/image/splat_queue.h"
 #include "core/render/technique_films.h"
 
+#include <limits>
 #include <numeric>
 
 namespace ulam {
@@ -31,6 +32,7 @@ private:
     Path path_;
 };
 
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kTile = 16;  // pixels a side: what a chunk of samples covers
 
 }  // namespace
@@ -67,6 +69,8 @@ struct IndependentRun::Worker : ContributionSink {
     }
 
     void add(const Contribution& c, uint32_t feature) override {
+        const double largest = std::abs(c.value.x) + std::abs(c.value.y) + std::abs(c.value.z);
+        if (!checkFinite(Cause::Contribution, largest < FixedSum::kLargestTerm ? largest : kInfinity)) return;
         if (c.technique.t == 1) splats.add(c.raster, c.value);
         else sum += c.value;
         if (techniques) techniques->add(c, pixel);
@@ -77,6 +81,7 @@ struct IndependentRun::Worker : ContributionSink {
 
     void take(Worker& other) {
         film.take(other.film);
+        nonFinite.take(other.nonFinite);
         if (techniques) techniques->take(*other.techniques);
         for (size_t i = 0; i < featureEnergy.size(); ++i) {
             featureEnergy[i].add(other.featureEnergy[i]);
@@ -85,7 +90,7 @@ struct IndependentRun::Worker : ContributionSink {
     }
     template <class Archive>
     void archive(Archive& a) {
-        a(film, featureEnergy);
+        a(film, featureEnergy, nonFinite);
         if (techniques) a(*techniques);
     }
 
@@ -96,6 +101,7 @@ struct IndependentRun::Worker : ContributionSink {
     double pixelShare;
     std::unique_ptr<TechniqueFilms> techniques;
     std::vector<FixedSum> featureEnergy;
+    NonFiniteLog nonFinite;
     // Of the sample being made:
     int pixel = 0;
     Spectrum sum{0.0};
@@ -120,7 +126,10 @@ void IndependentRun::work(int worker, uint64_t begin, uint64_t end) {
         numbers_.begin(uint32_t(w.pixel), uint32_t(i / uint64_t(order_.pixels())), w.source->walksFromLight(), w.u);
         Numbers numbers(w.u, random);
         w.sum = Spectrum(0.0);
+        takeCause();  // of what came before
         w.source->sample(order_.raster(w.pixel, numbers(NumberStream::Camera, 0)), numbers, w);
+        if (const Cause cause = takeCause(); cause != Cause::None) [[unlikely]]
+            w.nonFinite.add({.kind = NonFiniteEvent::Kind::Sample, .unit = i, .cause = name(cause)});
         w.film.countSample(w.pixel);
         w.film.addSample(w.pixel, w.sum);
     }
@@ -148,7 +157,7 @@ void IndependentRun::report(uint64_t units, RenderStatistics& statistics) {
     statistics.samples = units;
     statistics.rays = rays();
     const Worker& all = gathered();
-    if (all.film.nonFinite() > 0) statistics.nonFinite["contribution"] += all.film.nonFinite();
+    statistics.nonFinite = all.nonFinite;
     for (const FixedSum& e : all.featureEnergy) statistics.featureEnergy.push_back(units > 0 ? e.value() / double(units) : 0);
     if (all.techniques) all.techniques->develop(all.film, scene_.sensor->windowArea() / double(units), statistics.extraImages);
 }

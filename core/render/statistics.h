@@ -5,6 +5,7 @@
 #include "core/image/image.h"
 #include "core/mcmc/statistics.h"
 #include "core/mcmc/trace.h"
+#include "core/render/non_finite_log.h"
 
 #include <map>
 #include <string>
@@ -22,7 +23,7 @@ struct RenderStatistics {
     double normalization = 0;               ///< b; 0 for samplers without chains
     double normalizationStandardError = 0;
     std::map<std::string, MutationStatistics> mutationStatistics;
-    std::map<std::string, uint64_t> nonFinite;  ///< refused contributions by cause
+    NonFiniteLog nonFinite;                     ///< samples and steps with values that were refused
     std::vector<std::string> biasLedger;        ///< every known source of bias of this run, in words
     /// Energy (luminance) that passed each of the scene's features, and label changes of chains.
     std::vector<double> featureEnergy;

@@ -31,7 +31,7 @@ constexpr std::array<ScalarType, 8> kTypes{{{"char", "int8", 1, fromBytes<int8_t
                                             {"float", "float32", 4, fromBytes<float>},
                                             {"double", "float64", 8, fromBytes<double>}}};
 
-struct Property {
+struct PlyProperty {
     std::string_view name;
     const ScalarType* type;
     const ScalarType* lengthType = nullptr;  // of a list
@@ -40,7 +40,7 @@ struct Property {
 struct Element {
     std::string_view name;
     uint64_t count;
-    std::vector<Property> properties;
+    std::vector<PlyProperty> properties;
 
     std::optional<size_t> find(std::initializer_list<std::string_view> names) const {
         for (size_t i = 0; i < properties.size(); ++i)
@@ -98,7 +98,7 @@ const ScalarType& PlyReader::type(std::string_view name) const {
 
 void PlyReader::addProperty(std::string_view line) {
     if (elements_.empty()) error("a property stands before the first element");
-    Property property{};
+    PlyProperty property{};
     std::string_view word = nextWord(line);
     if (word == "list") {
         property.lengthType = &type(nextWord(line));
@@ -159,7 +159,7 @@ void PlyReader::checkRoom(uint64_t count, size_t bytesEach, std::string_view wha
 
 size_t PlyReader::smallestSize(const Element& element) const {
     size_t size = 0;
-    for (const Property& p : element.properties)
+    for (const PlyProperty& p : element.properties)
         size += format_ == Format::Ascii ? 1 : p.lengthType ? p.lengthType->size : p.type->size;
     return size;
 }
@@ -167,7 +167,7 @@ size_t PlyReader::smallestSize(const Element& element) const {
 void PlyReader::row(const Element& element, std::optional<size_t> wantedList) {
     row_.clear();
     for (size_t i = 0; i < element.properties.size(); ++i) {
-        const Property& property = element.properties[i];
+        const PlyProperty& property = element.properties[i];
         row_.push_back(scalar(property.lengthType ? *property.lengthType : *property.type));
         if (!property.lengthType) continue;
         const double length = row_.back();
@@ -210,7 +210,7 @@ void PlyReader::vertices(const Element& element) {
 bool PlyReader::isPlainTriangles(const Element& element) const {
     const bool native = format_ == (std::endian::native == std::endian::little ? Format::Little : Format::Big);
     if (!native || element.properties.size() != 1 || !element.properties[0].lengthType) return false;
-    const Property& list = element.properties[0];
+    const PlyProperty& list = element.properties[0];
     return list.lengthType->size == 1 && (list.type->name == "int" || list.type->name == "uint");
 }
 

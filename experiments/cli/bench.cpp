@@ -18,7 +18,7 @@ struct BenchScene {
 };
 constexpr BenchScene kScenes[] = {{"cornell_box", R"({"type": "cornell_box", "variant": "glass_sphere"})"},
                                   {"terrain", R"({"type": "terrain"})"}};
-constexpr const char* kFilm = R"({"width": 512, "height": 512, "rfilter": {"type": "box"}})";
+constexpr const char* kBenchFilm = R"({"width": 512, "height": 512, "rfilter": {"type": "box"}})";
 constexpr const char* kLimits = R"("max_depth": 8, "rr_depth": 1000000)";
 
 struct Case {
@@ -114,7 +114,7 @@ Rates measure(const Scene& scene, const Case& c, int threads, double seconds) {
 /// Appends a record of each case.
 void benchScene(const BenchScene& which, double seconds, bool json, Json& cases) {
     const auto description = SceneDescription::fromNode(JsonDocument::fromText(which.description, "bench").root(), ".");
-    const Scene scene = description.build(Json::parse(kFilm));
+    const Scene scene = description.build(Json::parse(kBenchFilm));
     for (const Case& c : kCases) {
         double single = 0;  // units per ceiling ray: what two threads do more is not the machine's change of pace
         for (int threads = 1; threads <= 2; ++threads) {

@@ -4,6 +4,7 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/base/file_lock.h"
 #include "core/config/suggest.h"
 #include "experiments/cli/commands.h"
 #include "experiments/cli/render_job.h"
@@ -111,8 +112,10 @@ void renderImage(const RenderArguments& a) {
     if (result.interrupted && isBlack(result.image)) failIfSignalled("nothing was found until then, and there is no image" + after);
     if (!result.interrupted) refuseBlackImage(result);
     for (const std::string& warning : warningsOf(result)) progress.message("warning: " + warning);
-    writeExr(a.output, result.image, imageAttributes(run));
     const fs::path output = a.output;
+    const FileLock together = FileLock::await(output.parent_path());  // of renders with one name, the files of one win
+    removeTemporaries(output.parent_path().empty() ? "." : output.parent_path(), Below::No);
+    writeExr(a.output, result.image, imageAttributes(run));
     for (const auto& [name, image] : result.statistics.extraImages)
         writeExr(output.parent_path() / fmt::format("{}.{}.exr", output.stem().string(), name), image);
     if (!a.stats.empty()) writeFileAtomically(a.stats, dump(resultJson(run, result, scene.features)) + "\n");

@@ -5,9 +5,12 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/base/file_lock.h"
 #include "core/config/suggest.h"
 #include "experiments/cli/arguments.h"
 #include "experiments/cli/commands.h"
+#include "experiments/engine/reference.h"
+#include "experiments/engine/result.h"
 #include "experiments/engine/signals.h"
 #include "experiments/engine/summary.h"
 #include "experiments/report/report.h"
@@ -25,15 +28,19 @@ struct RunArguments {
     bool resume = false, dryRun = false, keepGoing = false, quiet = false, json = false;
 };
 
-/// $ULAM_RUNS/NAME-N or runs/NAME-N: the first N that is free, or the last one that is there.
+/// $ULAM_RUNS/NAME-N or runs/NAME-N: the first N that is free, which is made, or the last one that is there.
 fs::path defaultFolder(const std::string& name, bool last) {
-    const char* parent = std::getenv("ULAM_RUNS");
-    const auto folder = [&](int n) {
-        return fs::path(parent && *parent ? parent : "runs") / fmt::format("{}-{}", name, n);
-    };
+    const char* given = std::getenv("ULAM_RUNS");
+    const fs::path parent = given && *given ? given : "runs";
+    const auto folder = [&](int n) { return parent / fmt::format("{}-{}", name, n); };
     int n = 1;
     while (fs::exists(folder(n))) ++n;
-    return folder(last && n > 1 ? n - 1 : n);
+    if (last && n > 1) return folder(n - 1);
+    makeFolder(parent);
+    std::error_code error;
+    while (!fs::create_directory(folder(n), error) && !error) ++n;  // another process may be faster
+    if (error) fail(ExitCode::CannotWrite, "cannot make the folder {}: {}", folder(n).string(), error.message());
+    return folder(n);
 }
 
 /// Where the verdict cannot come out significant, whatever the errors.
@@ -98,13 +105,19 @@ void runExperiment(const RunArguments& a) {
     options.runDir = a.folder.empty() ? defaultFolder(plan.name, a.resume) : fs::path(a.folder);
     options.threads = *a.threads;
     options.keepGoing = a.keepGoing;
+    makeFolder(options.runDir);
+    const FileLock lock = FileLock::claim(options.runDir / "run.lock");
     if (!a.resume && fs::exists(options.runDir / "resolved.json"))
         fail(ExitCode::Usage, "{} holds a run already: give --resume to go on with it, or another -o",
              options.runDir.string());
 
     if (a.resume) removeTemporaries(options.runDir);
+    removeTemporaries(referenceCache(), Below::No);
     Progress progress(a.quiet);
     std::vector<std::string> warnings = replicateWarnings(plan);
+    if (!lock.held())
+        warnings.push_back(fmt::format("no lock on {}, where the file system has none: let one process write there",
+                                       options.runDir.string()));
     for (const auto& reference : plan.references)
         for (const std::string& warning : reference.scene->scene.warnings)
             warnings.push_back(reference.scene->name + ": " + warning);

@@ -1,4 +1,4 @@
-// ulam verify: the audit of mutations and samplers.
+// ulam verify: the audit of mutations, samplers, kernels and targets.
 
 #include "core/base/error.h"
 #include "experiments/cli/arguments.h"
@@ -10,7 +10,7 @@ namespace ulam {
 namespace {
 
 struct VerifyArguments {
-    std::vector<std::string> mutations, samplers;
+    std::vector<std::string> mutations, samplers, kernels, targets;
     std::string level = "quick";
     std::shared_ptr<std::uint64_t> seed;
     std::shared_ptr<int> threads;
@@ -22,6 +22,8 @@ void verifyRegistered(const VerifyArguments& a) {
     verify::Options options;
     options.mutations = a.mutations;
     options.samplers = a.samplers;
+    options.kernels = a.kernels;
+    options.targets = a.targets;
     options.level = a.level == "full" ? verify::Level::Full : verify::Level::Quick;
     options.seed = *a.seed;
     options.threads = *a.threads;
@@ -47,12 +49,14 @@ void verifyRegistered(const VerifyArguments& a) {
 void addVerifyCommand(CLI::App& app) {
     auto a = std::make_shared<VerifyArguments>();
     CLI::App& command =
-        *app.add_subcommand("verify", "audit mutations and samplers; ends with code 3 where one is rejected");
+        *app.add_subcommand("verify", "audit mutations, samplers, kernels and targets; ends with code 3 where one is rejected");
     const auto names = [&](const char* option, std::vector<std::string>& target, const char* help) {
         command.add_option(option, target, help)->type_name("NAME");
     };
     names("--mutation", a->mutations, "mutations to audit (see: ulam list mutations)");
     names("--sampler", a->samplers, "samplers to audit (see: ulam list samplers)");
+    names("--kernel", a->kernels, "kernels to audit (see: ulam list kernels)");
+    names("--target", a->targets, "targets to audit (see: ulam list targets)");
     command.add_option("--level", a->level, "quick: about 20 s a mutation; full: as far as the audit goes")
         ->check(CLI::IsMember({"quick", "full"}))
         ->capture_default_str();

@@ -1,7 +1,5 @@
 #include "experiments/engine/reference.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstdlib>
 #include <numeric>
@@ -47,14 +45,15 @@ void write(const PlannedReference& reference, const fs::path& folder, const Imag
 
 /// The cache is a convenience: where it cannot be written, the next run makes the reference again.
 void fillCache(const fs::path& folder, const std::string& key) {
-    const fs::path cached = referenceCache() / key;
+    const fs::path temporary = referenceCache() / temporaryName();
     std::error_code error;
-    const fs::path temporary = cached.string() + fmt::format(".{}", ::getpid());
-    fs::create_directories(temporary, error);
-    for (const char* file : kFiles)
-        if (!error) fs::copy_file(folder / file, temporary / file, fs::copy_options::overwrite_existing, error);
-    if (!error) fs::rename(temporary, cached, error);
-    if (error) fs::remove_all(temporary, error);
+    try {
+        makeFolder(temporary);
+        for (const char* file : kFiles) writeFileAtomically(temporary / file, readFile(folder / file));
+        fs::rename(temporary, referenceCache() / key, error);  // fails where another process was faster
+    } catch (const Error&) {
+    }
+    fs::remove_all(temporary, error);
 }
 
 Json sharesJson(const Features& features, const std::vector<statistics::MeanEstimate>& shares) {
@@ -109,7 +108,7 @@ void checkSize(const PlannedReference& reference, const Image& image, const fs::
              sensor.width(), sensor.height(), reference.scene->name, image.width, image.height);
 }
 
-/// A stored reference. Fails where anything of it is missing, damaged, of another size or not what was written.
+/// A stored reference. Fails, with UnreadableFile where it may yet be in order, where anything of it is missing, damaged, of another size or not what was written.
 Reference load(const PlannedReference& reference, const fs::path& folder) {
     const JsonDocument document = JsonDocument::fromFile(folder / "result.json");
     const JsonNode result = document.root();
@@ -130,6 +129,8 @@ bool isIntact(const PlannedReference& reference, const fs::path& folder) {
     try {
         load(reference, folder);
         return true;
+    } catch (const UnreadableFile&) {
+        throw;
     } catch (const Error&) {
         return false;
     }
@@ -144,7 +145,7 @@ void discard(const fs::path& folder) {
 /// False where the cache does not hold it; a damaged entry would stand in the way of the next one and is removed.
 bool takeFromCache(const PlannedReference& reference, const fs::path& folder) {
     const fs::path cached = referenceCache() / reference.key;
-    if (!isIntact(reference, cached)) {
+    if (!isCached(reference)) {
         std::error_code ignored;
         fs::remove_all(cached, ignored);
         return false;
@@ -257,7 +258,11 @@ fs::path referenceCache() {
 
 bool prepareReference(const PlannedReference& reference, const fs::path& runDir) {
     const fs::path folder = folderOf(reference, runDir);
-    if (isIntact(reference, folder)) return true;
+    if (isIntact(reference, folder)) {
+        std::error_code ignored;  // a run that was killed at the very end left them
+        fs::remove_all(partsFolder(reference, runDir), ignored);
+        return true;
+    }
     discard(folder);
     if (reference.spec.kind == ReferenceSpec::Kind::Truth) return writeTruth(reference, folder), true;
     if (reference.spec.kind == ReferenceSpec::Kind::File) return writeFromFile(reference, folder), true;
@@ -265,7 +270,11 @@ bool prepareReference(const PlannedReference& reference, const fs::path& runDir)
 }
 
 bool isCached(const PlannedReference& reference) {
-    return isIntact(reference, referenceCache() / reference.key);
+    try {
+        return isIntact(reference, referenceCache() / reference.key);
+    } catch (const UnreadableFile&) {
+        return false;
+    }
 }
 
 fs::path partsFolder(const PlannedReference& reference, const fs::path& runDir) {

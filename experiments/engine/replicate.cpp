@@ -1,5 +1,7 @@
 #include "experiments/engine/replicate.h"
 
+#include "core/base/file.h"
+
 namespace ulam {
 
 namespace {
@@ -40,6 +42,10 @@ fs::path replicateFolder(const fs::path& taskFolder, int replicate) {
     return taskFolder / fmt::format("r{:03}", replicate);
 }
 
+fs::path checkpointFile(const fs::path& taskFolder, int replicate) {
+    return replicateFolder(taskFolder, replicate) / "checkpoint";
+}
+
 std::optional<FinishedReplicate> finishedReplicate(const Task& task, int replicate, const fs::path& taskFolder,
                                                    std::string* damage) {
     const fs::path folder = replicateFolder(taskFolder, replicate);
@@ -55,6 +61,8 @@ std::optional<FinishedReplicate> finishedReplicate(const Task& task, int replica
         FinishedReplicate finished{result.json(), readRecordedImage(folder / "image.exr", result.at("image_sha256"))};
         checkSnapshots(task, result.at("snapshots"), folder, finished.image);
         return finished;
+    } catch (const UnreadableFile&) {
+        throw;
     } catch (const Error& error) {
         if (damage) *damage = error.what();
         return {};
@@ -83,7 +91,7 @@ bool renderReplicate(const Task& task, int replicate, const fs::path& taskFolder
     options.progress = progress;
     options.interrupt = &interrupt;
     const fs::path folder = replicateFolder(taskFolder, replicate);
-    options.checkpoint = CheckpointPlan{.file = folder / "checkpoint",
+    options.checkpoint = CheckpointPlan{.file = checkpointFile(taskFolder, replicate),
                                         .identity = {{"task", task.hash()}, {"replicate", replicate}},
                                         .resume = true};
     makeFolder(folder);

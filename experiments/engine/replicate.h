@@ -13,13 +13,17 @@ namespace ulam {
 /// FOLDER/r007
 std::filesystem::path replicateFolder(const std::filesystem::path& taskFolder, int replicate);
 
+/// Where an unfinished replicate keeps its state.
+std::filesystem::path checkpointFile(const std::filesystem::path& taskFolder, int replicate);
+
 struct FinishedReplicate {
     Json result;  ///< result.json; what the analysis reads of it is there and of its type
     Image image;
 };
 
 /// A finished replicate, or nothing. Finished means: made by this very task, complete, and every image is what was
-/// written. `damage` says what is wrong with one that is there and is none of another task.
+/// written. `damage` says what is wrong with one that is there and is none of another task. Throws UnreadableFile: what
+/// cannot be read now may be in order.
 std::optional<FinishedReplicate> finishedReplicate(const Task& task, int replicate,
                                                    const std::filesystem::path& taskFolder,
                                                    std::string* damage = nullptr);

@@ -109,7 +109,7 @@ Json resultJson(const RunIdentity& run, const RenderResult& result, const Featur
         {"mutation_statistics", mutations},
         {"feature_energy", energy},
         {"feature_jumps", s.featureJumps},
-        {"non_finite", s.nonFinite},
+        {"non_finite", s.nonFinite.counts()},
         {"bias_ledger", s.biasLedger},
         {"diagnostics", s.diagnostics},
         {"repeat", repetition(run, result)},
@@ -137,9 +137,9 @@ bool isBlack(const Image& image) {
 
 std::vector<std::string> warningsOf(const RenderResult& result) {
     std::vector<std::string> warnings;
-    for (const auto& [cause, count] : result.statistics.nonFinite)
-        warnings.push_back(fmt::format("{} values of {} were refused, being not finite or beyond {:g}", count, cause,
-                                       FixedSum::kLargestTerm));
+    for (const auto& [cause, count] : result.statistics.nonFinite.counts())
+        warnings.push_back(fmt::format("{} samples or steps met a value that is not finite, or beyond {:g}, and left it out: {}",
+                                       count, FixedSum::kLargestTerm, cause));
     return warnings;
 }
 

@@ -148,6 +148,8 @@ private:
     bool doReplicate(const Task& task, int replicate, const fs::path& folder, const std::string& what) {
         std::string damage;
         if (finishedReplicate(task, replicate, folder, &damage)) {
+            std::error_code ignored;  // of a run that was killed at the very end
+            fs::remove(checkpointFile(folder, replicate), ignored);
             workload_.skip(task);
             ++reused_;
             return true;

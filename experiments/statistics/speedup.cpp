@@ -68,7 +68,7 @@ void redraw(std::vector<std::size_t>& indices, PhiloxStream& random) {
     for (std::size_t& i : indices) i = random.index(indices.size());
 }
 
-bool allPositive(std::span<const CurvePoint> points) {
+bool errorsPositive(std::span<const CurvePoint> points) {
     return std::ranges::all_of(points, [](const CurvePoint& p) { return p.error > 0; });
 }
 
@@ -84,7 +84,7 @@ Speedup speedup(std::span<const CurvePoint> samplerEnds, std::span<const Curve> 
              baseline.front().size(), curve.size());
     }
     Speedup result;
-    if (!allPositive(samplerEnds) || !std::ranges::all_of(baseline, allPositive)) {
+    if (!errorsPositive(samplerEnds) || !std::ranges::all_of(baseline, errorsPositive)) {
         result.status = SpeedupStatus::ErrorsNotPositive;
         return result;
     }

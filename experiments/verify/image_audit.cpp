@@ -57,6 +57,14 @@ TiledEstimate renderTiled(const Scene& scene, const Json& sampler, const Budget&
     return estimate;
 }
 
+double coverage(const Image& image, const TiledEstimate& reference) {
+    const std::vector<double> means = tileMeans(image);
+    size_t lit = 0, covered = 0;
+    for (size_t i = 0; i < means.size(); ++i)
+        if (reference.tiles[i].mean > 0) ++lit, covered += means[i] > 0;
+    return lit ? double(covered) / double(lit) : 1;
+}
+
 ImageComparison compare(std::string place, const TiledEstimate& runs, const TiledEstimate& reference) {
     ImageComparison c;
     c.place = std::move(place);

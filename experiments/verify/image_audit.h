@@ -40,6 +40,9 @@ struct ImageComparison {
     double energyWidth = 0;  ///< half of the interval's width, relative to the reference
     bool energyHolds() const { return std::abs(energyShift) <= energyWidth; }
 };
+/// Share of the tiles that the reference has light in where the image has some too.
+double coverage(const Image& image, const TiledEstimate& reference);
+
 ImageComparison compare(std::string place, const TiledEstimate& runs, const TiledEstimate& reference);
 
 }  // namespace ulam::verify

@@ -3,11 +3,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace ulam::verify {
 
+namespace {
+
+Json finite(double x) {
+    return std::isfinite(x) ? Json(x) : Json(fmt::format("{}", x));
+}
+
+}  // namespace
+
 const char* name(Outcome outcome) {
-    constexpr const char* names[] = {"passed", "rejected", "not audited", "not covered"};
+    constexpr const char* names[] = {"passed", "rejected", "not audited", "reported", "not covered"};
     return names[int(outcome)];
 }
 
@@ -24,7 +33,7 @@ bool Report::rejected() const {
 void print(const SubjectReport& report) {
     fmt::print("{} {}\n", report.kind, report.name);
     for (const Finding& f : report.findings) {
-        fmt::print("  {:<3} {:<12} {:<12} {:>6.1f} s  {}\n", f.level, f.check, name(f.outcome), f.seconds, f.summary);
+        fmt::print("  {:<3} {:<16} {:<12} {:>6.1f} s  {}\n", f.level, f.check, name(f.outcome), f.seconds, f.summary);
         for (const std::string& detail : f.details) fmt::print("      {}\n", detail);
     }
     if (report.rejected()) fmt::print("      repeat with: {}\n", report.replay);
@@ -39,6 +48,9 @@ Json toJson(const Report& report) {
                                 {"check", f.check},
                                 {"outcome", name(f.outcome)},
                                 {"summary", f.summary},
+                                {"statistic", f.statistic ? finite(*f.statistic) : Json()},
+                                {"p", f.p ? Json(*f.p) : Json()},
+                                {"samples", f.samples},
                                 {"details", f.details},
                                 {"numbers", f.numbers},
                                 {"seconds", f.seconds}});

@@ -7,10 +7,6 @@
 namespace ulam::verify {
 namespace {
 
-// Runs of a twentieth of the work that say how much is needed: samplers differ widely in variance.
-constexpr int kPilotRuns = 12;
-constexpr double kPilotShare = 0.05, kMostGrowth = 400, kSafety = 1.6;
-
 Budget scaled(const Budget& budget, double factor) {
     Budget b;
     if (budget.spp) b.spp = std::max(1.0, *budget.spp * factor);
@@ -18,18 +14,18 @@ Budget scaled(const Budget& budget, double factor) {
     return b;
 }
 
-/// Adds a comparison, or says why there is none.
-std::string judge(const std::string& sampler, const audit::AuditScene& scene, const AuditSettings& settings,
-                  References& references, std::vector<ImageComparison>& comparisons) {
+}  // namespace
+
+std::string compareSampler(Json config, const audit::AuditScene& scene, const std::string& place, const AuditSettings& settings,
+                           References& references, std::vector<ImageComparison>& comparisons) {
     const Work& work = settings.work;
-    Json config = samplerConfig(sampler, scene);
     const bool chains = Registry<Sampler>::instance().create(JsonNode(config))->isChainSampler();
     Budget budget;
     (chains ? budget.mutations : budget.spp) = chains ? work.pathMutations : work.samplesPerPixel;
     const auto render = [&](double factor, int runs, const char* part) {
         if (chains) config["bootstrap"] = std::llround(std::max(1000.0, work.bootstrap * factor));
         return renderTiled(scene.scene, config, scaled(budget, factor), runs, settings.seed,
-                           cellOf(sampler + scene.name + part), settings.threads);
+                           cellOf(place + part), settings.threads);
     };
     TiledEstimate pilot;
     try {
@@ -40,16 +36,11 @@ std::string judge(const std::string& sampler, const audit::AuditScene& scene, co
         throw;
     }
     if (!pilot.biasLedger.empty()) return pilot.biasLedger.front();
-    const TiledEstimate& reference = references(scene);
-    // Half of the interval's square is left to the reference.
-    const double found = compare(scene.name, pilot, reference).energyWidth;
-    const double factor = kPilotShare * kPilotRuns / work.runs * kSafety * std::pow(found / work.energyWidth, 2) * 2;
+    const double factor = neededWork(pilot.energy, work);
     comparisons.push_back(
-        compare(scene.name, render(std::clamp(factor, kPilotShare, kMostGrowth), work.runs, ""), reference));
+        compare(place, render(std::clamp(factor, kPilotShare, kMostGrowth), work.runs, ""), references(scene)));
     return {};
 }
-
-}  // namespace
 
 SubjectReport auditSampler(const std::string& sampler, const AuditSettings& settings, References& references) {
     const auto start = std::chrono::steady_clock::now();
@@ -58,7 +49,7 @@ SubjectReport auditSampler(const std::string& sampler, const AuditSettings& sett
     std::vector<ImageComparison> comparisons;
     std::vector<std::string> notJudged;
     for (const auto& scene : audit::auditScenes()) {
-        const std::string why = judge(sampler, *scene, settings, references, comparisons);
+        const std::string why = compareSampler(samplerConfig(sampler, *scene), *scene, fmt::format("{} by {}", scene->name, sampler), settings, references, comparisons);
         if (!why.empty()) notJudged.push_back(fmt::format("not judged in {}: {}", scene->name, why));
         // Stopping early, the correction is for fewer tests: a false alarm is at most as many times likelier as there are scenes.
         if (settings.stopAtFirst && judgeImages(comparisons, work).outcome == Outcome::Rejected) break;

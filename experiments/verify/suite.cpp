@@ -1,10 +1,11 @@
 #include "experiments/verify/suite.h"
 
 #include "core/base/error.h"
-#include "core/mcmc/sample.h"
+#include "core/mcmc/target.h"
 #include "core/render/sampler.h"
 #include "experiments/verify/mutation_audit.h"
 #include "experiments/verify/sampler_audit.h"
+#include "experiments/verify/target_audit.h"
 
 namespace ulam::verify {
 namespace {
@@ -16,49 +17,53 @@ std::vector<std::string> registeredNames() {
     return names;
 }
 
-template <class Interface>
-void checkNames(const std::vector<std::string>& names) {
-    const std::vector<std::string> known = registeredNames<Interface>();
-    for (const std::string& name : names) {
-        if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-        const std::string hint = didYouMean(name, known);
-        fail(ExitCode::Usage, "unknown {} {}{}{}; known: {}", Interface::kind(), inQuotes(name),
-             hint.empty() ? "" : ", ", hint, listInQuotes(known));
+/// One kind of subject: what was asked for, or all there is where nothing was.
+struct Kind {
+    std::string name;
+    std::vector<std::string> asked, known;
+    std::function<SubjectReport(const std::string&, size_t subjects)> audit;
+
+    void checkNames() const {
+        for (const std::string& subject : asked) {
+            if (std::find(known.begin(), known.end(), subject) != known.end()) continue;
+            const std::string hint = didYouMean(subject, known);
+            fail(ExitCode::Usage, "unknown {} {}{}{}; known: {}", name, inQuotes(subject), hint.empty() ? "" : ", ",
+                 hint, listInQuotes(known));
+        }
     }
-}
+};
 
 }  // namespace
 
 Report verify(const Options& options) {
-    checkNames<Mutation>(options.mutations);
-    checkNames<Sampler>(options.samplers);
-    const bool everything = options.mutations.empty() && options.samplers.empty();
-    const auto mutations = everything ? registeredNames<Mutation>() : options.mutations;
-    const auto samplers = everything ? registeredNames<Sampler>() : options.samplers;
-
     Report report;
     report.seed = options.seed;
     report.level = options.level == Level::Full ? "full" : "quick";
     const Work work = options.level == Level::Full ? fullWork() : quickWork();
-    const size_t subjects = mutations.size() + samplers.size();
     References references(work, options.seed, options.threads);
-    const auto add = [&](SubjectReport subject) {
-        subject.replay = fmt::format("ulam verify --{} {} --level {} --seed {}", subject.kind, subject.name,
-                                     report.level, options.seed);
-        if (options.finished) options.finished(subject);
-        report.subjects.push_back(std::move(subject));
-    };
-    const auto announce = [&](const std::string& what) {
-        if (options.progress) options.progress(double(report.subjects.size()) / double(subjects), what);
-    };
-    for (const std::string& mutation : mutations) {
-        announce(mutation);
-        add(auditMutation(mutation, AuditSettings{work, options.seed, options.threads, mutations.size(), options.stopAtFirst}, references));
+    const auto settings = [&](size_t subjects) { return AuditSettings{work, options.seed, options.threads, subjects, options.stopAtFirst}; };
+    std::vector<Kind> kinds{
+        {"kernel", options.kernels, {"metropolis_hastings"}, [](const std::string& name, size_t) { return auditKernel(name); }},
+        {"target", options.targets, registeredNames<Importance>(),
+         [&](const std::string& name, size_t n) { return auditTarget(name, settings(n), references); }},
+        {"mutation", options.mutations, registeredNames<Mutation>(),
+         [&](const std::string& name, size_t n) { return auditMutation(name, settings(n), references); }},
+        {"sampler", options.samplers, registeredNames<Sampler>(),
+         [&](const std::string& name, size_t n) { return auditSampler(name, settings(n), references); }}};
+    size_t asked = 0, subjects = 0;
+    for (const Kind& kind : kinds) kind.checkNames(), asked += kind.asked.size();
+    for (Kind& kind : kinds) {
+        if (asked == 0) kind.asked = kind.known;
+        subjects += kind.asked.size();
     }
-    for (const std::string& sampler : samplers) {
-        announce(sampler);
-        add(auditSampler(sampler, AuditSettings{work, options.seed, options.threads, samplers.size(), options.stopAtFirst}, references));
-    }
+    for (const Kind& kind : kinds)
+        for (const std::string& name : kind.asked) {
+            if (options.progress) options.progress(double(report.subjects.size()) / double(subjects), name);
+            SubjectReport subject = kind.audit(name, kind.asked.size());
+            subject.replay = fmt::format("ulam verify --{} {} --level {} --seed {}", kind.name, name, report.level, options.seed);
+            if (options.finished) options.finished(subject);
+            report.subjects.push_back(std::move(subject));
+        }
     return report;
 }
 

@@ -10,7 +10,7 @@ namespace ulam::verify {
 enum class Level : uint8_t { Quick, Full };
 
 struct Options {
-    std::vector<std::string> mutations = {}, samplers = {};  ///< names; both empty: everything registered
+    std::vector<std::string> mutations = {}, samplers = {}, kernels = {}, targets = {};  ///< names; none: everything
     Level level = Level::Quick;
     uint64_t seed = 1;
     int threads = 1;
@@ -19,7 +19,7 @@ struct Options {
     std::function<void(const SubjectReport&)> finished = {};  ///< after each subject
 };
 
-/// L0, L1 and L4 (core/mcmc/audit) and L5 for mutations, L5 for samplers. Fails with Usage at unknown names.
+/// L0 to L2 and L4 to L7 for mutations, L3 for kernels, L5 for samplers and targets. Fails with Usage at unknown names.
 Report verify(const Options& options);
 
 }  // namespace ulam::verify

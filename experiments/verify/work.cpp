@@ -8,11 +8,14 @@ Work quickWork() {
     Work w;
     w.seedSamples = 10'000, w.states = 1000;
     w.structure = 10'000, w.balance = 20'000, w.jacobian = 2500;
-    w.starts = 80'000, w.ranks = 20'000;
+    w.densityStates = 6, w.density = 20'000;
+    w.starts = 60'000, w.ranks = 20'000;
     w.runs = 32;
     w.bootstrap = 20'000, w.pathMutations = 64'000, w.primaryMutations = 16'384, w.samplesPerPixel = 24;
     w.energyWidth = 0.005;
     w.aloneImages = {"specular", "outdoor"}, w.mixedImages = {"specular"};
+    w.partners = 3;
+    w.mixingChains = 100, w.mixingSteps = 1024;
     return w;
 }
 
@@ -20,10 +23,13 @@ Work fullWork() {
     Work w = quickWork();
     w.seedSamples *= 20, w.states *= 10;
     w.structure *= 100, w.balance *= 50, w.jacobian *= 20;
+    w.densityStates *= 10, w.density *= 10;
     w.starts *= 20, w.ranks *= 20;
     w.bootstrap *= 25, w.pathMutations *= 25, w.primaryMutations *= 25, w.samplesPerPixel *= 25;
     w.energyWidth = 0.001;
     w.aloneImages = w.mixedImages = {"diffuse", "specular", "outdoor"};
+    w.partners = 100;
+    w.mixingSteps *= 20;
     return w;
 }
 
@@ -36,10 +42,20 @@ uint64_t cellOf(std::string_view name) {
 const TiledEstimate& References::operator()(const audit::AuditScene& scene) {
     const auto place = made_.find(scene.name);
     if (place != made_.end()) return place->second;
-    Budget budget;
-    budget.spp = work_.samplesPerPixel;
-    return made_[scene.name] = renderTiled(scene.scene, samplerConfig("bdpt", scene), budget, work_.runs, seed_,
-                                           cellOf("reference " + scene.name), threads_);
+    const auto render = [&](double factor, int runs, const char* part) {
+        Budget budget;
+        budget.spp = std::max(1.0, work_.samplesPerPixel * factor);
+        return renderTiled(scene.scene, samplerConfig("bdpt", scene), budget, runs, seed_,
+                           cellOf("reference " + scene.name + part), threads_);
+    };
+    const double factor = neededWork(render(kPilotShare, kPilotRuns, " pilot").energy, work_);
+    return made_[scene.name] = render(std::clamp(factor, 1.0, kMostGrowth), work_.runs, "");
+}
+
+double neededWork(const statistics::MeanEstimate& pilot, const Work& work) {
+    // Half of the interval's square is the runs', the other half the reference's.
+    const double allowed = work.energyWidth * pilot.mean / statistics::studentQuantile(2.0 * (work.runs - 1), 1 - (1 - kEnergyConfidence) / 2);
+    return kPilotShare * kPilotRuns / work.runs * kSafety * pilot.varianceOfMean / (allowed * allowed / 2);
 }
 
 Json samplerConfig(const std::string& sampler, const audit::AuditScene& scene) {

@@ -9,17 +9,25 @@
 
 namespace ulam::verify {
 
+/// Šidák's level of all tests of one level over a suite.
+inline constexpr double kSuiteLevel = 1e-6;
+
 struct Work {
     uint64_t seedSamples;                   ///< bootstrap samples that states are looked for in, each scene
     size_t states;                          ///< kept of them
     uint64_t structure, balance, jacobian;  ///< trials of L0 and L1, each scene
+    size_t densityStates;  ///< of L2, each scene
+    uint64_t density;      ///< proposals from each of them, and independent ones
     uint64_t starts;  ///< bootstrap samples of the weighted identities, each scene and mix; a tenth of it where a step
                       ///< is a whole sample
     uint64_t ranks;   ///< chains of the rank test
     int runs;         ///< of L5
     double bootstrap, pathMutations, primaryMutations, samplesPerPixel;  ///< each run
     double energyWidth;                                 ///< largest half width of the energy interval, relative
-    std::vector<std::string> aloneImages, mixedImages;  ///< scenes of L5
+    std::vector<std::string> aloneImages, mixedImages;  ///< scenes of L5 and L6
+    size_t partners;                                    ///< of L6
+    int mixingChains;                                   ///< of L7
+    double mixingSteps;                                 ///< of each
 };
 Work quickWork();
 Work fullWork();
@@ -35,7 +43,13 @@ struct AuditSettings {
 /// Chooses the random numbers of a part of the audit by its name.
 uint64_t cellOf(std::string_view name);
 
-/// Images by bidirectional path tracing, made when they are asked for first.
+// Runs of a share of the work that say how much is needed: scenes and samplers differ widely in variance.
+inline constexpr int kPilotRuns = 12;
+inline constexpr double kPilotShare = 0.05, kMostGrowth = 400, kSafety = 1.6;
+/// How much of the work, in units of it, makes the energy interval narrow enough, judged by a pilot.
+double neededWork(const statistics::MeanEstimate& pilot, const Work& work);
+
+/// Images by bidirectional path tracing, made when they are asked for first; precise enough for the energy interval.
 class References {
 public:
     References(const Work& work, uint64_t seed, int threads) : work_(work), seed_(seed), threads_(threads) {}

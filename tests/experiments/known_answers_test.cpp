@@ -55,7 +55,7 @@ void compare(const Known& known) {
             judge(fmt::format("energy through {}", scene.features.names[i]), shares[i] * total,
                   [&](const RenderResult& run) { return run.statistics.featureEnergy[i]; });
         for (const RenderResult& run : runs) {
-            CHECK(run.statistics.nonFinite.empty());
+            CHECK(run.statistics.nonFinite.counts().empty());
             CHECK(run.statistics.biasLedger.empty());
         }
     }

@@ -2,6 +2,7 @@
 
 #include "core/mcmc/perturbation.h"
 #include "core/mcmc/small_steps.h"
+#include "core/mcmc/target.h"
 
 namespace ulam::planted {
 namespace {
@@ -11,6 +12,7 @@ enum class Bug {
     Geometry,  ///< density per solid angle where it must be per area
     Swapped,   ///< forward for reverse
     Blind,     ///< no visibility ray
+    Overfull,  ///< the density is twice too large: it cancels in every ratio
 };
 
 struct NoParameters {
@@ -69,7 +71,7 @@ private:
         if (!(a.pdf > 0 && b.pdf > 0)) return -std::numeric_limits<double>::infinity();
         const PathFactors& f = bug == Bug::Swapped ? from.factors : to.factors;
         const double camera = bug == Bug::Geometry ? f.at[size_t(k)].pdfToLight : f.fromCamera(k - 1);
-        return std::log(step_.pdf(a.raster, b.raster) * sensor.windowArea() * camera);
+        return std::log((bug == Bug::Overfull ? 2 : 1) * step_.pdf(a.raster, b.raster) * sensor.windowArea() * camera);
     }
 
     RasterPerturbation step_{0.1, 20};
@@ -96,6 +98,40 @@ public:
     }
 };
 
+/// Symmetric, so that no image shows it; but its steps are half as long as it says.
+class Narrow : public Mutation {
+public:
+    using Parameters = NoParameters;
+    explicit Narrow(const Parameters&) {}
+
+    Space space() const override { return Space::Primary; }
+    Proposal propose(const Sample& x, StepContext& context) const override {
+        Proposal p;
+        moveNumbers(x.u, p.y.u, context.random, [](double u, Random& random) { return wrapped(u, 0.05 * (random() - 0.5)); });
+        return p;
+    }
+    std::optional<double> logDensity(const Sample& from, const Sample& to, StepContext&) const override {
+        return logMoves(from.u, to.u, [](double d) {
+            return std::abs(d) < 0.05 ? std::log(10.0) : -std::numeric_limits<double>::infinity();
+        });
+    }
+};
+
+struct BlueBlind : Importance {
+    using Parameters = NoParameters;
+    explicit BlueBlind(const Parameters&) {}
+    double operator()(const Spectrum& f) const override { return f.x + f.y; }
+};
+struct Squared : Importance {
+    using Parameters = NoParameters;
+    explicit Squared(const Parameters&) {}
+    double operator()(const Spectrum& f) const override { return f.x * f.x + f.y * f.y + f.z * f.z; }
+};
+
+template <class Type>
+void addTarget(const char* name) {
+    [[maybe_unused]] static const Registration<Importance, Type> registration(name, "for tests of the audit", __FILE__);
+}
 template <class Type>
 void add(const char* name) {
     [[maybe_unused]] static const Registration<Mutation, Type> registration(name, "for tests of the audit", __FILE__);
@@ -109,8 +145,12 @@ void registerAll() {
     add<Planted<Bug::Swapped>>("planted_swapped");
     add<Planted<Bug::Blind>>("planted_blind");
     add<Planted<Bug::Geometry, false>>("planted_silent");
+    add<Planted<Bug::Overfull>>("planted_overfull");
+    add<Narrow>("planted_narrow");
     add<Nowhere>("planted_nowhere");
     add<Drift>("planted_drift");
+    addTarget<BlueBlind>("planted_blueblind");
+    addTarget<Squared>("planted_squared");
 }
 
 }  // namespace ulam::planted

@@ -112,7 +112,7 @@ JacobianTally auditJacobian(const AuditScene& scene, const Subject& subject, con
     JacobianTally tally;
     if (subject.target() == Space::Primary) return tally;
     Comparer comparer(scene, subject, key, tally);
-    for (uint64_t t = begin; t < end; ++t) comparer.run(states.x[t % states.x.size()], t % states.x.size(), t);
+    for (uint64_t t = begin; t < end; ++t) comparer.run(states.x[t % states.x.size()], states.source[t % states.x.size()], t);
     return tally;
 }
 

@@ -22,7 +22,7 @@ struct JacobianTally {
     struct Comparison {
         double excess;  ///< log stated − log of the branch found
         bool only;      ///< there is no other branch: the excess must be zero, else it may be positive
-        uint64_t state, trial;
+        uint64_t state, trial;  ///< where it came from, the bootstrap sample; and its number
     };
     uint64_t proposals = 0, noisy = 0, notSquare = 0;
     std::map<std::string, std::vector<Comparison>> classes;

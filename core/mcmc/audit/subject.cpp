@@ -15,8 +15,9 @@ void Failures::merge(const Failures& later) {
         if (first_.size() < kKept) first_.push_back(f);
 }
 
-Subject::Subject(const std::string& mutation, Space target, const std::vector<std::string>& partners)
-    : target_(target), importance_(makeImportance("luminance")) {
+namespace {
+
+Json unequalMix(const std::string& mutation, const std::vector<std::string>& partners) {
     Json config = {{mutation, {{"weight", 1}}}};
     // Unequal weights, none of them 1: a forgotten selection ratio cannot cancel.
     double weight = 0.37;
@@ -24,8 +25,16 @@ Subject::Subject(const std::string& mutation, Space target, const std::vector<st
         config[partner] = {{"weight", weight}};
         weight = weight > 1 ? weight * 0.41 : weight * 1.7;
     }
-    mix_ = MutationMix::fromConfig(JsonNode(config), target);
+    return config;
 }
+
+}  // namespace
+
+Subject::Subject(const std::string& mutation, Space target, const std::vector<std::string>& partners)
+    : Subject(target, unequalMix(mutation, partners)) {}
+
+Subject::Subject(Space target, const Json& mix)
+    : target_(target), mix_(MutationMix::fromConfig(JsonNode(mix), target)), importance_(makeImportance("luminance")) {}
 
 std::unique_ptr<Target> Subject::makeTarget(const AuditScene& scene) const {
     BidirectionalOptions options;
@@ -87,7 +96,7 @@ States drawStates(const AuditScene& scene, const Subject& subject, RandomKey key
         for (const auto& [name, members] : byClass)
             if (chosen.size() < count) chosen.push_back(members[turn % members.size()]);
     for (uint64_t i : chosen)
-        if (seed(i, x)) states.x.push_back(x);
+        if (seed(i, x)) states.x.push_back(x), states.source.push_back(i);
     return states;
 }
 

@@ -20,7 +20,10 @@ enum class Stream : uint32_t {
     Normal,
     Start,
     Step,
-    Rank
+    Rank,
+    Density,
+    Guide,
+    Mix
 };
 inline Random randomOf(RandomKey key, Stream stream, uint64_t index) {
     return Random(key, uint32_t(stream), index);
@@ -49,6 +52,8 @@ private:
 class Subject {
 public:
     Subject(const std::string& mutation, Space target, const std::vector<std::string>& partners = {});
+    /// In a mix as in an experiment, which the mutation comes first in.
+    Subject(Space target, const Json& mix);
 
     const std::string& name() const { return mix_[0].name; }
     const Mutation& mutation() const { return *mix_[0].mutation; }
@@ -68,6 +73,7 @@ std::vector<std::string> partnersOf(const std::string& mutation, Space target);
 /// States of bootstrap samples to which the mutation applies.
 struct States {
     std::vector<Sample> x;
+    std::vector<uint64_t> source;  ///< number of the bootstrap sample each is from: bright and rare ones come repeatedly
     uint64_t drawn = 0;     ///< bootstrap samples looked at
     uint64_t positive = 0;  ///< that carry light
     uint64_t suitable = 0;  ///< of these: the mutation applies

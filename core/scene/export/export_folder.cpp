@@ -1,6 +1,9 @@
 #include "core/scene/export/export_folder.h"
 
-#include <unistd.h>
+#include <fcntl.h>
+#include <stdio.h>
+
+#include <cerrno>
 
 #include "core/base/error.h"
 #include "core/base/file.h"
@@ -46,9 +49,11 @@ ExportFolder::ExportFolder(const fs::path& place, const ExportFormat& format) : 
         if (!fs::is_directory(place_)) failToWrite(place, std::make_error_code(std::errc::not_a_directory));
         checkReplaceable(place_, format_);
     }
-    made_ = place_;
-    made_ += fmt::format(".ulam-{}.tmp", ::getpid());
-    makeFolder(made_);
+    removeTemporaries(place_.parent_path(), Below::No);
+    makeFolder(place_.parent_path());
+    made_ = place_.parent_path() / temporaryName();
+    fs::create_directory(made_, error);
+    if (error) failToWrite(place_, error);
 }
 
 ExportFolder::~ExportFolder() {
@@ -57,7 +62,11 @@ ExportFolder::~ExportFolder() {
 }
 
 void ExportFolder::write(const std::string& name, std::string_view bytes) {
-    writeFileAtomically(pathFor(name), bytes);
+    try {
+        writeFileAtomically(pathFor(name), bytes);
+    } catch (const Error& error) {  // which names the temporary folder
+        fail(error.code(), "cannot write {}: {}", (place_ / name).string(), error.what());
+    }
 }
 
 fs::path ExportFolder::pathFor(const std::string& name) const {
@@ -67,8 +76,12 @@ fs::path ExportFolder::pathFor(const std::string& name) const {
 
 void ExportFolder::commit() {
     std::error_code error;
-    const fs::path former = made_.string() + ".former";
     const bool replaces = fs::exists(place_);
+    // In one step, whenever the process is killed; the former export is thrown away under the temporary name.
+    if (replaces && ::renameat2(AT_FDCWD, made_.c_str(), AT_FDCWD, place_.c_str(), RENAME_EXCHANGE) == 0) return;
+    if (replaces && errno != EINVAL && errno != ENOSYS) failToWrite(place_, {errno, std::generic_category()});
+    // Not every file system can.
+    const fs::path former = place_.parent_path() / temporaryName();
     if (replaces) fs::rename(place_, former, error);
     if (error) failToWrite(place_, error);
     fs::rename(made_, place_, error);

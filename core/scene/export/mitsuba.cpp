@@ -62,9 +62,9 @@ pugi::xml_node appendProperty(pugi::xml_node parent, const char* tag, const std:
     return property;
 }
 
-class Exporter {
+class MitsubaExporter {
 public:
-    Exporter(const SceneDescription& description, const std::filesystem::path& folder, const MitsubaDialect& dialect)
+    MitsubaExporter(const SceneDescription& description, const std::filesystem::path& folder, const MitsubaDialect& dialect)
         : dialect_(dialect),
           plugins_(taggedPlugins(dialect)),
           scene_(description.build()),
@@ -102,7 +102,7 @@ private:
     std::vector<std::string> leftOut_;
 };
 
-void Exporter::property(pugi::xml_node parent, const ParameterInfo& parameter, const JsonNode& value) {
+void MitsubaExporter::property(pugi::xml_node parent, const ParameterInfo& parameter, const JsonNode& value) {
     if (value.isNull()) return;
     if (value.json() == 0 && std::ranges::find(kZeroIsDefault, parameter.name) != kZeroIsDefault.end()) return;
     const std::string name = dialect_.spelled(parameter.name);
@@ -134,7 +134,7 @@ void Exporter::property(pugi::xml_node parent, const ParameterInfo& parameter, c
     }
 }
 
-pugi::xml_node Exporter::plugin(pugi::xml_node parent, const JsonNode& node) {
+pugi::xml_node MitsubaExporter::plugin(pugi::xml_node parent, const JsonNode& node) {
     if (pluginName(node) == "ref") {
         pugi::xml_node reference = parent.append_child("ref");
         reference.append_attribute("id") = ids_.at(node.at("id").string()).c_str();
@@ -177,7 +177,7 @@ pugi::xml_node Exporter::plugin(pugi::xml_node parent, const JsonNode& node) {
 }
 
 /// A factor around a texture, which only old versions have.
-void Exporter::scaled(pugi::xml_node parent, const JsonNode& node) {
+void MitsubaExporter::scaled(pugi::xml_node parent, const JsonNode& node) {
     pugi::xml_node xml = parent.append_child("texture");
     xml.append_attribute("type") = "scale";
     appendProperty(xml, "float", "scale", decimals({node.at("scale").number()}));
@@ -185,7 +185,7 @@ void Exporter::scaled(pugi::xml_node parent, const JsonNode& node) {
 }
 
 /// `mesh` is Ulam's own.
-pugi::xml_node Exporter::mesh(pugi::xml_node parent, const JsonNode& node) {
+pugi::xml_node MitsubaExporter::mesh(pugi::xml_node parent, const JsonNode& node) {
     const Shape shape = readShape(node, assets_.files);
     const Mesh& loaded = std::get<Mesh>(shape.geometry);
     const std::string file = assets_.mesh(loaded, entryName(node));
@@ -199,7 +199,7 @@ pugi::xml_node Exporter::mesh(pugi::xml_node parent, const JsonNode& node) {
 }
 
 /// The dictionary with the groups that stand in instances as entries of their own: Mitsuba takes references only.
-JsonNode Exporter::groupsApart(const JsonNode& dictionary) const {
+JsonNode MitsubaExporter::groupsApart(const JsonNode& dictionary) const {
     Json result = dictionary.json();
     for (const JsonNode& node : entriesOf(dictionary)) {
         if (pluginName(node) != "instance") continue;
@@ -216,7 +216,7 @@ JsonNode Exporter::groupsApart(const JsonNode& dictionary) const {
 }
 
 /// The dictionary with the defaults written out that Mitsuba does not share.
-JsonNode Exporter::withClearSensors(const JsonNode& dictionary) const {
+JsonNode MitsubaExporter::withClearSensors(const JsonNode& dictionary) const {
     Json result = dictionary.json();
     for (const JsonNode& node : entriesOf(dictionary)) {
         if (!contains(scenePlugins(PluginKind::Sensors), pluginName(node))) continue;
@@ -238,14 +238,14 @@ JsonNode Exporter::withClearSensors(const JsonNode& dictionary) const {
     return JsonNode(std::move(result));
 }
 
-void Exporter::entry(const JsonNode& node) {
+void MitsubaExporter::entry(const JsonNode& node) {
     const std::string& type = pluginName(node);
     const auto known = plugins_.find(type);
     if (noteIfUnused(node, assets_.files) || known == plugins_.end()) return leaveOut(node, inQuotes(type));
     plugin(root_, node).append_attribute("id") = ids_.at(entryName(node)).c_str();
 }
 
-std::vector<std::string> Exporter::run() {
+std::vector<std::string> MitsubaExporter::run() {
     document_.append_child(pugi::node_comment).set_value(dialect_.format.mark);
     root_ = document_.append_child("scene");
     root_.append_attribute("version") = dialect_.version;
@@ -268,11 +268,11 @@ std::vector<std::string> Exporter::run() {
 }  // namespace
 
 std::vector<std::string> exportMitsuba3(const SceneDescription& description, const std::filesystem::path& folder) {
-    return Exporter(description, folder, mitsuba3()).run();
+    return MitsubaExporter(description, folder, mitsuba3()).run();
 }
 
 std::vector<std::string> exportMitsuba06(const SceneDescription& description, const std::filesystem::path& folder) {
-    return Exporter(description, folder, mitsuba06()).run();
+    return MitsubaExporter(description, folder, mitsuba06()).run();
 }
 
 }  // namespace ulam

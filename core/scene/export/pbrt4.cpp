@@ -44,9 +44,9 @@ std::vector<ParameterInfo> shapeParameters(const std::string& name) {
     return std::find_if(plugins.begin(), plugins.end(), [&](const PluginInfo& p) { return p.name == name; })->parameters;
 }
 
-class Exporter {
+class Pbrt4Exporter {
 public:
-    Exporter(const SceneDescription& description, const std::filesystem::path& folder)
+    Pbrt4Exporter(const SceneDescription& description, const std::filesystem::path& folder)
         : scene_(description.build()),
           filmSize_(description.filmSize()),
           dictionary_(description.dictionary()),
@@ -84,12 +84,12 @@ private:
     std::vector<std::string> leftOut_;
 };
 
-JsonNode Exporter::resolve(const JsonNode& node) const {
+JsonNode Pbrt4Exporter::resolve(const JsonNode& node) const {
     return isPlugin(node) && pluginName(node) == "ref" ? entries_.at(node.at("id").string()) : node;
 }
 
 /// pbrt's camera has x to the right.
-std::string Exporter::sensor(const JsonNode& node) {
+std::string Pbrt4Exporter::sensor(const JsonNode& node) {
     const Perspective& camera = *scene_.sensor;
     const Vertex lens = camera.lensPoint({0, 0});
     const Vec3d axis(camera.axis());
@@ -119,7 +119,7 @@ std::string Exporter::sensor(const JsonNode& node) {
     return text + "\n" + film(node);
 }
 
-std::string Exporter::film(const JsonNode& sensor) {
+std::string Pbrt4Exporter::film(const JsonNode& sensor) {
     const FilmSize& size = filmSize_;
     std::string text = fmt::format(
         "Film \"rgb\" \"integer xresolution\" {} \"integer yresolution\" {} \"string filename\" \"scene.exr\"",
@@ -152,7 +152,7 @@ std::string Exporter::film(const JsonNode& sensor) {
     return text + "\n";
 }
 
-std::string Exporter::geometry(const Shape& shape, const std::string& name, bool textured, bool& reversed) {
+std::string Pbrt4Exporter::geometry(const Shape& shape, const std::string& name, bool textured, bool& reversed) {
     reversed = shape.flipNormals;
     if (const auto* sphere = std::get_if<Sphere>(&shape.geometry)) {
         const auto& [x, y, z] = sphere->axes;
@@ -194,7 +194,7 @@ std::string Exporter::geometry(const Shape& shape, const std::string& name, bool
     return fmt::format("Shape \"plymesh\" \"string filename\" \"{}\"", assets_.mesh(mesh, name));
 }
 
-void Exporter::shape(const JsonNode& node, const Shape& shape) {
+void Pbrt4Exporter::shape(const JsonNode& node, const Shape& shape) {
     const bool emits = shape.emitter != kNone;
     const auto parametrization = std::holds_alternative<Sphere>(shape.geometry) ? pbrt::Parametrization::Sphere
                                  : std::holds_alternative<Disk>(shape.geometry) ? pbrt::Parametrization::Disk
@@ -216,13 +216,13 @@ void Exporter::shape(const JsonNode& node, const Shape& shape) {
     world_ += fmt::format("{}{}{}\nAttributeEnd\n", reversed ? "ReverseOrientation\n" : "", text, use.alpha);
 }
 
-void Exporter::group(const JsonNode& node, const std::string& name) {
+void Pbrt4Exporter::group(const JsonNode& node, const std::string& name) {
     world_ += fmt::format("ObjectBegin \"{}\"\n", name);
     for (const JsonNode& nested : nestedPlugins(node, {})) shape(nested, readShape(nested, assets_.files));
     world_ += "ObjectEnd\n";
 }
 
-void Exporter::instance(const JsonNode& node) {
+void Pbrt4Exporter::instance(const JsonNode& node) {
     for (const JsonNode& nested : nestedPlugins(node, shapeParameters("instance"))) {
         const bool named = pluginName(nested) == "ref";
         const std::string name = named ? nested.at("id").string() : node.key();
@@ -234,7 +234,7 @@ void Exporter::instance(const JsonNode& node) {
     }
 }
 
-std::string Exporter::environment(const JsonNode& node, const EnvmapEmitter& emitter) {
+std::string Pbrt4Exporter::environment(const JsonNode& node, const EnvmapEmitter& emitter) {
     // As many texels as the picture has around its equator.
     int size = 512;
     if (const auto filename = node.find("filename")) {
@@ -250,7 +250,7 @@ std::string Exporter::environment(const JsonNode& node, const EnvmapEmitter& emi
     return text;
 }
 
-void Exporter::light(const JsonNode& node) {
+void Pbrt4Exporter::light(const JsonNode& node) {
     const Emitter emitter = readEmitter(node, assets_.files);
     if (const auto* point = std::get_if<PointEmitter>(&emitter)) {
         world_ += fmt::format("LightSource \"point\" \"point3 from\" {}{}\n", numbers(Vec3d(point->position)),
@@ -274,7 +274,7 @@ void Exporter::light(const JsonNode& node) {
     }
 }
 
-std::vector<std::string> Exporter::run() {
+std::vector<std::string> Pbrt4Exporter::run() {
     const std::vector<JsonNode> entries = entriesOf(dictionary_);
     for (const JsonNode& node : entries) entries_.emplace(entryName(node), node);
     for (size_t i = 0; i < scene_.shapes.size(); ++i) shapes_.emplace(scene_.shapes[i].id, i);
@@ -309,7 +309,7 @@ std::vector<std::string> Exporter::run() {
 }  // namespace
 
 std::vector<std::string> exportPbrt4(const SceneDescription& description, const std::filesystem::path& folder) {
-    return Exporter(description, folder).run();
+    return Pbrt4Exporter(description, folder).run();
 }
 
 }  // namespace ulam

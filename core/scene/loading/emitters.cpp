@@ -112,7 +112,7 @@ Emitter readConstant(const JsonNode& node, LoadContext&) {
     return ConstantEmitter{parsePlugin<ConstantEmitter::Parameters>(node).radiance};
 }
 
-const PluginTable<Emitter(const JsonNode&, LoadContext&)>& table() {
+const PluginTable<Emitter(const JsonNode&, LoadContext&)>& emitterTable() {
     static const PluginTable<Emitter(const JsonNode&, LoadContext&)> plugins(
         "emitter", {
                        {{"area", "the surface of the shape that it is nested in, on the side of its normals",
@@ -132,19 +132,19 @@ const PluginTable<Emitter(const JsonNode&, LoadContext&)>& table() {
 }  // namespace
 
 std::vector<PluginInfo> emitterPlugins() {
-    return table().infos();
+    return emitterTable().infos();
 }
 
 Emitter readAreaEmitter(const JsonNode& node, uint32_t shape, PluginResolver& resolver) {
-    if (table().find(node).read != &readArea)
+    if (emitterTable().find(node).read != &readArea)
         node.fail(fmt::format("{} cannot be nested in a shape; area can", inQuotes(pluginName(node))));
-    const auto textured = texturedParameters(node, table().find(node).info, resolver);
+    const auto textured = texturedParameters(node, emitterTable().find(node).info, resolver);
     if (textured.empty()) return AreaEmitter{parsePlugin<AreaEmitter::Parameters>(node).radiance, shape};
     return AreaEmitter{parseOtherParameters<AreaEmitter::Parameters>(node, {"radiance"}).radiance, shape, textured.front().texture};
 }
 
 Emitter readEmitter(const JsonNode& node, LoadContext& context) {
-    return table().find(node).read(node, context);
+    return emitterTable().find(node).read(node, context);
 }
 
 }  // namespace ulam

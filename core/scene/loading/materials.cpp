@@ -77,7 +77,7 @@ Material readPlain(const JsonNode& node, PluginResolver& resolver, int) {
     return Material(Coating{std::move(coating)});
 }
 
-const PluginTable<Material(const JsonNode&, PluginResolver&, int)>& table() {
+const PluginTable<Material(const JsonNode&, PluginResolver&, int)>& materialTable() {
     static const PluginTable<Material(const JsonNode&, PluginResolver&, int)> plugins(
         "bsdf", {
                     {blendInfo(), readBlend},
@@ -108,11 +108,11 @@ const PluginTable<Material(const JsonNode&, PluginResolver&, int)>& table() {
 }  // namespace
 
 std::vector<PluginInfo> bsdfPlugins() {
-    return table().infos();
+    return materialTable().infos();
 }
 
 Material readMaterial(const JsonNode& node, PluginResolver& resolver, int depth) {
-    return table().find(node).read(node, resolver, depth);
+    return materialTable().find(node).read(node, resolver, depth);
 }
 
 Material defaultMaterial(bool emits) {

@@ -260,7 +260,7 @@ Shape readInlineMesh(const JsonNode& node, LoadContext& context) {
     return shape;
 }
 
-const PluginTable<Shape(const JsonNode&, LoadContext&)>& table() {
+const PluginTable<Shape(const JsonNode&, LoadContext&)>& shapeTable() {
     static const PluginTable<Shape(const JsonNode&, LoadContext&)> plugins(
         "shape",
         {
@@ -282,7 +282,7 @@ const PluginTable<Shape(const JsonNode&, LoadContext&)>& table() {
 }  // namespace
 
 std::vector<PluginInfo> shapePlugins() {
-    std::vector<PluginInfo> all = table().infos();
+    std::vector<PluginInfo> all = shapeTable().infos();
     for (PluginInfo& plugin : groupPlugins()) all.push_back(std::move(plugin));
     return all;
 }
@@ -295,7 +295,7 @@ const std::vector<ParameterInfo>& shapeParameters(const JsonNode& node) {
 }
 
 Shape readShape(const JsonNode& node, LoadContext& context) {
-    return table().find(node).read(node, context);
+    return shapeTable().find(node).read(node, context);
 }
 
 }  // namespace ulam

@@ -56,7 +56,7 @@ Texture readCheckerboard(const JsonNode& node, LoadContext&) {
 
 Texture readRgb(const JsonNode& node, LoadContext&) { node.fail("a plain colour is no texture"); }
 
-const PluginTable<Texture(const JsonNode&, LoadContext&)>& table() {
+const PluginTable<Texture(const JsonNode&, LoadContext&)>& textureTable() {
     static const PluginTable<Texture(const JsonNode&, LoadContext&)> plugins(
         "texture", {
                        {{"bitmap", "a picture over the surface's parameters", parameterInfo<BitmapParameters>()}, readBitmap},
@@ -69,7 +69,7 @@ const PluginTable<Texture(const JsonNode&, LoadContext&)>& table() {
 }  // namespace
 
 std::vector<PluginInfo> texturePlugins() {
-    return table().infos();
+    return textureTable().infos();
 }
 
 Image readPicture(const JsonNode& node, LoadContext& context) {
@@ -85,7 +85,7 @@ Image readPicture(const JsonNode& node, LoadContext& context) {
 }
 
 Texture readTexture(const JsonNode& node, LoadContext& context) {
-    return table().find(node).read(node, context);
+    return textureTable().find(node).read(node, context);
 }
 
 void checkTexture(const Texture& texture, const JsonNode& node, const ParameterInfo& bounds) {

@@ -26,7 +26,7 @@ Vec3f axisOf(const Matrix4& m, const Imath::V3d& direction) {
 
 Perspective::Perspective(const Parameters& p, const Aperture& aperture, const Matrix4& toWorld, const FilmSize& film, float margin)
     : film_(film),
-      window_({-margin, -margin}, {film.cropWidth + margin, film.cropHeight + margin}),
+      window_({-margin, -margin}, {float(film.cropWidth) + margin, float(film.cropHeight) + margin}),
       unitX_(axisOf(toWorld, {1, 0, 0})),
       unitY_(axisOf(toWorld, {0, 1, 0})),
       unitZ_(axisOf(toWorld, {0, 0, 1})),

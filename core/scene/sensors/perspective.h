@@ -7,6 +7,7 @@
 // `window`, which reaches beyond the image by what the reconstruction filter needs. Its importance W_e is normalised so
 // that ∫ W_e |cosθ| dω dA over window and aperture is 1 (pinhole: ∫ W_e dω): a path's f then is a density over the window.
 
+#include "core/base/non_finite.h"
 #include "core/base/random.h"
 #include "core/scene/emitters/emission.h"
 
@@ -112,6 +113,7 @@ public:
         const Vec2f r{float((x - x0_) / dx_), float((y - y0_) / dy_)};
         if (!contains(r)) return {};
         const double pdf = pdfOnAxis_ / (z * z * z);
+        if (!checkFinite(Cause::Sensor, pdf)) return {};
         return {positionIsDelta() ? pdf : pdf * positionPdf_ / z, pdf, r};
     }
 

@@ -45,7 +45,7 @@ def sun_colours(spectral):
 
 
 def table(name, values):
-    numbers = [str(x) for x in values.astype(numpy.float32).ravel()]
+    numbers = [f"{x}f" for x in values.astype(numpy.float32).ravel()]
     lines = [", ".join(numbers[i : i + 18]) for i in range(0, len(numbers), 18)]
     return f"const float {name}[{len(numbers)}] = {{\n" + ",\n".join(lines) + "};\n"
 

@@ -41,7 +41,7 @@ struct Folder {
 Image gradient(int width = 37, int height = 21) {
     Image image(width, height);
     for (int y = 0; y < height; ++y) {
-        for (int x = 0; x < width; ++x) image.at(x, y) = Rgb(0.01f * x, 0.02f * y, 0.001f * x * y - 0.1f);
+        for (int x = 0; x < width; ++x) image.at(x, y) = Rgb(0.01f * float(x), 0.02f * float(y), 0.001f * float(x * y) - 0.1f);
     }
     return image;
 }

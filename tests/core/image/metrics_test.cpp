@@ -28,7 +28,7 @@ Image smooth() {
     Image image(37, 23);
     for (int y = 0; y < image.height; ++y) {
         for (int x = 0; x < image.width; ++x) {
-            image.at(x, y) = Rgb(0.5f + 0.4f * std::sin(0.3f * x), 0.01f * x + 0.02f * y, 0.3f);
+            image.at(x, y) = Rgb(0.5f + 0.4f * std::sin(0.3f * float(x)), 0.01f * float(x) + 0.02f * float(y), 0.3f);
         }
     }
     return image;

@@ -2,6 +2,8 @@
 
 #include "core/base/archive.h"
 #include "core/mcmc/audit/balance.h"
+#include "core/mcmc/audit/density.h"
+#include "core/mcmc/audit/enumeration.h"
 #include "core/mcmc/audit/invariance.h"
 #include "core/mcmc/audit/jacobian.h"
 #include "core/mcmc/audit/rank.h"
@@ -155,4 +157,69 @@ TEST_CASE("The sequential rule goes on only while in doubt") {
     });
     CHECK(doubtful.rounds == 2);
     CHECK_FALSE(doubtful.rejected);
+}
+
+TEST_CASE("The kernel leaves π invariant on a space small enough to enumerate") {
+    for (const Space target : {Space::Path, Space::Primary}) {
+        const Enumeration e = enumerateKernel(target);
+        CAPTURE(int(target));
+        CHECK(e.residual < kEnumerationResidual);
+        CHECK(e.nullSteps > 0);
+        CHECK(enumerateKernel(target, true).residual > 1e-3);
+    }
+}
+
+namespace {
+
+struct DensityVerdict {
+    double p = 1;
+    size_t tests = 0;
+    uint64_t tooMuch = 0;
+};
+DensityVerdict densityOf(const std::string& mutation, const std::string& sceneName, Space target, uint64_t states,
+                         uint64_t proposals) {
+    planted::registerAll();
+    const AuditScene& scene = sceneNamed(sceneName);
+    const Subject subject(mutation, target);
+    const States drawn = drawStates(scene, subject, kKey, 500, 40);
+    DensityVerdict verdict;
+    DensityTally all;
+    for (uint64_t i = 0; i < states; ++i)
+        all.merge(auditDensity(scene, subject, drawn.x[i * drawn.x.size() / states], kKey, i, proposals));
+    for (const DensityTest& test : all.tests)
+        for (const Marginal& m : test.marginals) verdict.p = std::min(verdict.p, m.p), ++verdict.tests;
+    verdict.p *= double(verdict.tests);
+    verdict.tooMuch = all.failures.count();
+    return verdict;
+}
+
+}  // namespace
+
+TEST_CASE("Proposals follow the density that the mutation states") {
+    for (const char* mutation : {"planted_none", "bidirectional", "lens_subpath", "lens"}) {
+        CAPTURE(mutation);
+        const DensityVerdict v = densityOf(mutation, "diffuse", Space::Path, 4, 6000);
+        CHECK(v.tests > 10);
+        CHECK(v.p > 1e-4);
+        CHECK(v.tooMuch == 0);
+    }
+    for (const char* mutation : {"caustic", "multi_chain"}) {
+        CAPTURE(mutation);
+        CHECK(densityOf(mutation, "specular", Space::Path, 4, 6000).p > 1e-5);
+    }
+    for (const char* mutation : {"large_step", "kelemen_step", "gaussian_step"}) {
+        CAPTURE(mutation);
+        const DensityVerdict v = densityOf(mutation, "diffuse", Space::Path, 3, 10'000);
+        CHECK(v.tests > 20);
+        CHECK(v.p > 1e-4);
+    }
+}
+
+TEST_CASE("Proposals that do not follow their density are found") {
+    CHECK(densityOf("planted_geometry", "diffuse", Space::Path, 4, 6000).p < 1e-6);
+    CHECK(densityOf("planted_swapped", "diffuse", Space::Path, 4, 6000).p < 1e-6);
+    const DensityVerdict twice = densityOf("planted_overfull", "diffuse", Space::Path, 4, 6000);
+    CHECK(twice.p < 1e-6);
+    CHECK(twice.tooMuch > 0);
+    CHECK(densityOf("planted_narrow", "diffuse", Space::Path, 3, 10'000).p < 1e-6);
 }

@@ -18,7 +18,7 @@ Mesh wave() {
     constexpr int kSide = 8;
     for (int i = 0; i <= kSide; ++i)
         for (int j = 0; j <= kSide; ++j) {
-            const float x = 2.0f * i / kSide - 1, y = 2.0f * j / kSide - 1;
+            const float x = 2 * float(i) / kSide - 1, y = 2 * float(j) / kSide - 1;
             mesh.positions.emplace_back(x, y, 0.2f * std::sin(3 * x) * std::cos(2 * y));
             mesh.normals.push_back(normalize(Vec3f(-0.6f * std::cos(3 * x) * std::cos(2 * y), 0.4f * std::sin(3 * x) * std::sin(2 * y), 1)));
             mesh.texcoords.emplace_back(x * 0.7f + 0.1f * y, y * y + y);

@@ -211,7 +211,7 @@ TEST_CASE("the sensor's directions follow its importance, which is normalised, a
     const Scene scene = buildScene(Json::parse(text), Json::object());
     const Perspective& sensor = *scene.sensor;
     const Vertex eye = sensor.samplePosition({});
-    const double pixel = 2.0 / 40, margin = (sensor.window().max.x - sensor.width()) / 2.0 * 2 * pixel;
+    const double pixel = 2.0 / 40, margin = (double(sensor.window().max.x) - sensor.width()) * pixel;
     const double x = 10 * pixel + margin, y = 5 * pixel + margin;
     CHECK(margin > 0);
     CHECK_FIT(misfit(

@@ -101,7 +101,7 @@ TEST_CASE("a report holds its run and asks for nothing") {
     writeReport(folder.path);
     const std::string page = readFile(folder.path / "report.html");
 
-    CHECK(page.size() < 12e6);
+    CHECK(page.size() < 12'000'000);
     // 2 references, and per cell the mean, the median and the worst replicate.
     CHECK(countOf(page, "<script type=\"text/plain\"") == 2 + 6 * 3);
     for (const char* address : {"src=\"", "@import", "url(http", "<link rel=\"stylesheet", "fetch(", "XMLHttpRequest"})

@@ -75,10 +75,10 @@ TEST_CASE("grid_of_holes: light passes through the holes and nowhere else, and f
         const Vec3f eye = scene.sensor->samplePosition({}).position;
         CHECK(scene.warnings.empty());
         REQUIRE(scene.features.names.size() == size_t(n * n));
-        const float width = float(scene.sensor->width());
+        const float cell = float(scene.sensor->width()) / float(n);
         for (int row = 0; row < n; ++row)
             for (int column = 0; column < n; ++column) {
-                const Vec2f raster((column + 0.5f) * width / n, (row + 0.5f) * width / n);
+                const Vec2f raster((float(column) + 0.5f) * cell, (float(row) + 0.5f) * cell);
                 const Vertex seen = firstHit(scene, eye, scene.sensor->direction(scene.sensor->samplePosition({}), raster));
                 REQUIRE(scene.shapes[seen.shape].id == "receiver");
                 const Vertex lit = firstHit(scene, seen.position, {0, 0, -1});
@@ -86,7 +86,7 @@ TEST_CASE("grid_of_holes: light passes through the holes and nowhere else, and f
                 const uint32_t feature = scene.features.crossed(lit.position, seen.position);
                 REQUIRE(feature == uint32_t(row * n + column));
                 CHECK(scene.features.names[feature] == "hole_" + std::to_string(row) + "_" + std::to_string(column));
-                const float aside = 0.4f / n;
+                const float aside = 0.4f / float(n);
                 for (const float dx : {-aside, aside})
                     CHECK(scene.shapes[firstHit(scene, seen.position + Vec3f(dx, 0, 0), {0, 0, -1}).shape].id ==
                           "plate");

@@ -21,7 +21,7 @@ Budget samples(double spp) {
 std::vector<double> energies(const std::vector<RenderResult>& runs) {
     std::vector<double> result;
     for (const RenderResult& run : runs) {
-        CHECK(run.statistics.nonFinite.empty());
+        CHECK(run.statistics.nonFinite.counts().empty());
         CHECK(run.statistics.biasLedger.empty());
         result.push_back(tileMeans(run.image, 1)[0]);
     }
@@ -71,7 +71,7 @@ TEST_CASE("hard scenes: every contribution is finite, and the images are neither
         if (generator["type"] == "cornell_box") generator["variant"] = "glossy";
         const RenderResult run =
             renderRuns(sceneOf(generator), {{"type", "bdpt"}, {"max_depth", 6}}, samples(64), 1, 103)[0];
-        CHECK(run.statistics.nonFinite.empty());
+        CHECK(run.statistics.nonFinite.counts().empty());
         const double mean = tileMeans(run.image, 1)[0];
         INFO(name << ": " << mean);
         CHECK(mean > 0.05);
@@ -92,7 +92,7 @@ TEST_CASE("ring: chains with lens perturbations through several specular chains 
     Budget budget;
     budget.mutations = 1e6;
     const RenderResult run = renderRuns(sceneOf({{"type", "ring"}, {"alpha", 0}}, 64), sampler, budget, 1, 104)[0];
-    CHECK(run.statistics.nonFinite.empty());
+    CHECK(run.statistics.nonFinite.counts().empty());
     CHECK(run.statistics.mutations >= 1'000'000);
     for (const auto& [name, statistics] : run.statistics.mutationStatistics) {
         INFO(name);

@@ -49,7 +49,7 @@ namespace {
 uint64_t allocationsOf(const Scene& scene, const Json& sampler) {
     constexpr uint64_t kChunks = 100;
     const auto made = Registry<Sampler>::instance().create(JsonNode(sampler));
-    const auto run = made->start({scene, makeKey(3), 1, 0, 0});
+    const auto run = made->start({scene, makeKey(3), 1, 0, 0, 0});
     run->prepare([](int) { return false; });
     uint64_t before = 0;
     for (uint64_t i = 0; i < 2 * kChunks; ++i) {

@@ -1,0 +1,31 @@
+#pragma once
+// Advisory locks between processes. The system releases them when the process ends, however it ends.
+
+#include <filesystem>
+#include <utility>
+
+namespace ulam {
+
+/// A lock that is held until the object or the process is gone. Where the file system knows no locks none is held, and
+/// `held()` says so.
+class FileLock {
+public:
+    /// The lock of a file, which is made, stays, and holds "PROCESS HOST" of who has or had the lock. Fails with
+    /// CannotWrite where another process has it, naming that process, and where the file cannot be written.
+    static FileLock claim(const std::filesystem::path& file);
+    /// The lock of a folder, as soon as no other process has it. It leaves no file.
+    static FileLock await(const std::filesystem::path& folder);
+
+    ~FileLock();
+    FileLock(FileLock&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
+    FileLock& operator=(FileLock&&) = delete;
+
+    bool held() const { return descriptor_ >= 0; }
+
+private:
+    explicit FileLock(int descriptor) : descriptor_(descriptor) {}
+
+    int descriptor_;
+};
+
+}  // namespace ulam
