@@ -24,8 +24,8 @@ public:
     Vec3f sample(const Vec3f& from, double choice, double u, double v) const {
         const Cells c = cellsAround(from);
         const int i = std::min(int(choice * c.count()), c.count() - 1);
-        const double column = c.column0 + i % c.columns() + 0.5 + (u - 0.5) * opening_;
-        const double row = c.row0 + i / c.columns() + 0.5 + (v - 0.5) * opening_;
+        const int cellColumn = c.column0 + i % c.columns(), cellRow = c.row0 + i / c.columns();
+        const double column = cellColumn + 0.5 + (u - 0.5) * opening_, row = cellRow + 0.5 + (v - 0.5) * opening_;
         return normalize(f_.corner + f_.across * float(column / f_.columns) + f_.down * float(row / f_.rows) - from);
     }
 

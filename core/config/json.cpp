@@ -200,7 +200,7 @@ JsonDocument JsonDocument::fromText(std::string text, std::string name) {
 
 JsonDocument JsonDocument::fromParts(Json value, std::string name, std::vector<std::pair<std::string, std::string>> places) {
     JsonSource source{std::move(name), std::make_shared<const std::string>(), {}};
-    for (auto& [pointer, place] : places) source.changes.push_back({std::move(pointer), std::move(place)});
+    for (auto& place : places) source.changes.push_back({std::move(place.first), std::move(place.second)});
     return {std::make_shared<const Json>(std::move(value)), std::make_shared<const JsonSource>(std::move(source))};
 }
 

@@ -50,7 +50,15 @@ std::string endingOf(const std::string& path) {
     return ending;
 }
 
-std::unique_ptr<OIIO::ImageInput> openImage(const std::string& path) {
+/// The reader of a file, and the bytes that it reads where it can read from memory: then what cannot be read is told from
+/// what is damaged.
+struct ImageFile {
+    std::unique_ptr<const std::string> bytes;
+    std::unique_ptr<OIIO::Filesystem::IOMemReader> memory;
+    std::unique_ptr<OIIO::ImageInput> input;
+};
+
+ImageFile openImage(const std::string& path) {
     configureLibrary();
     std::error_code ignored;
     if (!std::filesystem::exists(path, ignored)) fail(ExitCode::InputMissing, "{}: no such image file", path);
@@ -62,10 +70,18 @@ std::unique_ptr<OIIO::ImageInput> openImage(const std::string& path) {
     if (!std::filesystem::is_regular_file(path, ignored)) {
         fail(ExitCode::InvalidConfig, "{}: expected an image file; found something that is no file", path);
     }
-    requireReadable(path);
 
-    auto input = OIIO::ImageInput::create(ending);
+    ImageFile file;
+    file.input = OIIO::ImageInput::create(ending);
+    const auto& input = file.input;
     if (!input) fail(ExitCode::InvalidConfig, "{}: {}", path, oneLine(OIIO::geterror()));
+    if (input->supports("ioproxy")) {
+        file.bytes = std::make_unique<const std::string>(readFile(path));
+        file.memory = std::make_unique<OIIO::Filesystem::IOMemReader>(file.bytes->data(), file.bytes->size());
+        input->set_ioproxy(file.memory.get());
+    } else {
+        requireReadable(path);
+    }
     OIIO::ImageSpec hints, spec;
     hints["oiio:UnassociatedAlpha"] = 1;  // colours must not be multiplied by an alpha that is dropped
     if (!input->open(path, spec, hints)) {
@@ -79,7 +95,7 @@ std::unique_ptr<OIIO::ImageInput> openImage(const std::string& path) {
         fail(ExitCode::InvalidConfig, "{}: {} x {} pixels are more than the limit of {}", path, spec.width, spec.height,
              kMaxImagePixels);
     }
-    return input;
+    return file;
 }
 
 /// The channels to read, [first, first + count): R, G, B side by side, or one grey one.
@@ -160,7 +176,8 @@ std::string encodePng(const std::string& path, const Image& image, double exposu
 }  // namespace
 
 Image readImage(const std::string& path, Encoding encoding) {
-    const auto input = openImage(path);
+    const ImageFile file = openImage(path);
+    const auto& input = file.input;
     const OIIO::ImageSpec spec = input->spec();
     const Channels channels = chooseChannels(path, spec);
 
@@ -190,8 +207,8 @@ void writeExr(const std::string& path, const Image& image, const ImageAttributes
 
 std::map<std::string, std::string> readImageAttributes(const std::string& path) {
     std::map<std::string, std::string> attributes;
-    const auto input = openImage(path);
-    for (const OIIO::ParamValue& value : input->spec().extra_attribs) {
+    const ImageFile file = openImage(path);
+    for (const OIIO::ParamValue& value : file.input->spec().extra_attribs) {
         if (value.type() == OIIO::TypeDesc::STRING) attributes[value.name().string()] = value.get_string();
     }
     return attributes;

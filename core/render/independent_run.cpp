@@ -55,7 +55,8 @@ PixelOrder::PixelOrder(int width, int height, const ReconstructionFilter& filter
 }
 
 Vec2f PixelOrder::raster(int pixel, const Block& u) const {
-    return {float(pixel % width_ + 0.5 + filter_.sample(u[0])), float(pixel / width_ + 0.5 + filter_.sample(u[1]))};
+    const int column = pixel % width_, row = pixel / width_;
+    return {float(column + 0.5 + filter_.sample(u[0])), float(row + 0.5 + filter_.sample(u[1]))};
 }
 
 struct IndependentRun::Worker : ContributionSink {

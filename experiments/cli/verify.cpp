@@ -1,9 +1,11 @@
 // ulam verify: the audit of mutations, samplers, kernels and targets.
 
 #include "core/base/error.h"
+#include "core/base/file.h"
 #include "experiments/cli/arguments.h"
 #include "experiments/cli/commands.h"
 #include "experiments/engine/progress.h"
+#include "experiments/verify/page.h"
 #include "experiments/verify/suite.h"
 
 namespace ulam {
@@ -15,6 +17,7 @@ struct VerifyArguments {
     std::shared_ptr<std::uint64_t> seed;
     std::shared_ptr<int> threads;
     bool stopAtFirst = false, json = false;
+    std::string page;
 };
 
 void verifyRegistered(const VerifyArguments& a) {
@@ -37,6 +40,7 @@ void verifyRegistered(const VerifyArguments& a) {
     };
     const verify::Report report = verify::verify(options);
     progress.clear();
+    if (!a.page.empty()) writeFileAtomically(a.page, verify::toHtml(report));
     if (a.json) fmt::print("{}\n", dump(verify::toJson(report)));
     std::vector<std::string> rejected;
     for (const auto& subject : report.subjects)
@@ -64,6 +68,7 @@ void addVerifyCommand(CLI::App& app) {
     a->threads = addThreadsOption(command);
     command.add_flag("--stop-at-first", a->stopAtFirst, "leave out the checks that follow a subject's first rejection");
     command.add_flag("--json", a->json, "as JSON");
+    command.add_option("--page", a->page, "also write one HTML page with pictures")->type_name("FILE.html");
     addPluginOption(command);
     command.callback([a] { verifyRegistered(*a); });
 }

@@ -28,11 +28,13 @@ void TiledRuns::add(const Image& image) {
     double sum = 0;
     for (size_t i = 0; i < means.size(); ++i) tiles_[i].push_back(means[i]);
     for (size_t i = 0; i < means.size(); i += 3) sum += luminance(Spectrum(means[i], means[i + 1], means[i + 2]));
+    across_ = size_t(image.width / kTile);
     energy_.push_back(3 * sum / double(means.size()));
 }
 
 TiledEstimate TiledRuns::estimate() const {
     TiledEstimate estimate;
+    estimate.across = across_;
     for (const auto& values : tiles_) estimate.tiles.push_back(statistics::estimateMean(values));
     estimate.energy = statistics::estimateMean(energy_);
     return estimate;
@@ -68,6 +70,7 @@ double coverage(const Image& image, const TiledEstimate& reference) {
 ImageComparison compare(std::string place, const TiledEstimate& runs, const TiledEstimate& reference) {
     ImageComparison c;
     c.place = std::move(place);
+    c.tilesAcross = runs.across;
     c.p = statistics::welchPValues(runs.tiles, reference.tiles);
     const auto &a = runs.energy, &b = reference.energy;
     const double degrees = statistics::welchDegrees(a.varianceOfMean, a.degrees, b.varianceOfMean, b.degrees);

@@ -14,6 +14,7 @@ inline constexpr double kTileLevel = 1e-5, kEnergyConfidence = 0.99999;
 /// Means over independent runs.
 struct TiledEstimate {
     std::vector<statistics::MeanEstimate> tiles;  ///< tile by tile, three channels each
+    size_t across = 0;                            ///< tiles in a row
     statistics::MeanEstimate energy;              ///< mean luminance
     std::vector<std::string> biasLedger;          ///< of the runs
 };
@@ -27,6 +28,7 @@ public:
 private:
     std::vector<std::vector<double>> tiles_;
     std::vector<double> energy_;
+    size_t across_ = 0;
 };
 
 /// Independent runs of a sampler, each with the budget; `seed` and `cell` choose their random numbers.
@@ -36,6 +38,7 @@ TiledEstimate renderTiled(const Scene& scene, const Json& sampler, const Budget&
 struct ImageComparison {
     std::string place;       ///< for messages
     std::vector<double> p;   ///< of every tile and channel, not adjusted
+    size_t tilesAcross = 0;
     double energyShift = 0;  ///< relative to the reference
     double energyWidth = 0;  ///< half of the interval's width, relative to the reference
     bool energyHolds() const { return std::abs(energyShift) <= energyWidth; }

@@ -95,8 +95,12 @@ Finding judgeImages(const std::vector<ImageComparison>& comparisons, const Work&
         if (std::abs(c.energyShift) > std::abs(shift)) shift = c.energyShift;
         width = std::max(width, c.energyWidth);
         finding.numbers[c.place] = {
-            {"smallest_adjusted_p", own}, {"energy_shift", c.energyShift}, {"energy_half_width", c.energyWidth}};
+            {"smallest_adjusted_p", own}, {"energy_shift", c.energyShift}, {"energy_half_width", c.energyWidth},
+            {"tiles_across", c.tilesAcross}, {"p_values", c.p}};
     }
+    finding.p = smallest;
+    finding.statistic = shift;
+    finding.samples = comparisons.size() * size_t(work.runs);
     finding.outcome = finding.details.empty() ? Outcome::Passed : Outcome::Rejected;
     finding.summary =
         fmt::format("{} comparisons of {} runs, smallest adjusted p {:.2g}, energy within {:+.2f} % (± {:.2f} %)",

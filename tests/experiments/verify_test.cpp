@@ -2,6 +2,7 @@
 
 #include "core/base/error.h"
 #include "experiments/verify/mutation_audit.h"
+#include "experiments/verify/page.h"
 #include "experiments/verify/sampler_audit.h"
 #include "experiments/verify/suite.h"
 #include "experiments/verify/target_audit.h"
@@ -143,4 +144,24 @@ TEST_CASE("The report as JSON") {
     CHECK(json["rejected"] == true);
     CHECK(json["subjects"][0]["findings"][0]["outcome"] == "rejected");
     for (const char* key : {"statistic", "p", "samples"}) CHECK(json["subjects"][0]["findings"][0].contains(key));
+}
+
+TEST_CASE("The report as a page") {
+    Report report{.seed = 3, .level = "quick", .subjects = {audited("lens")}};
+    report.subjects[0].findings[1].details.push_back("a < b");
+    const std::string page = toHtml(report);
+    CHECK(page.find("<h2>mutation lens</h2>") != std::string::npos);
+    CHECK(page.find("raster x") != std::string::npos);
+    CHECK(page.find("sorted p-values") != std::string::npos);
+    CHECK(page.find("a &lt; b") != std::string::npos);
+    // Everything is inside: nothing is loaded from elsewhere.
+    for (const char* outside : {"src=", "href=\"http", "url(", "@import"}) CHECK(page.find(outside) == std::string::npos);
+    const auto count = [&](std::string_view what) {
+        size_t n = 0;
+        for (size_t at = page.find(what); at != std::string::npos; at = page.find(what, at + 1)) ++n;
+        return n;
+    };
+    CHECK(count("<figure>") == count("</figure>"));
+    CHECK(count("<svg") >= 8);
+    CHECK(page.find("nan") == std::string::npos);
 }

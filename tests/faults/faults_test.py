@@ -208,7 +208,7 @@ class Faults(unittest.TestCase):
             if time.process_time() + sum(os.times()[2:4]) - start > seconds:
                 break
         print(f"{done} of {len(trials)} trials: {dict(tally)}")
-        self.assertGreater(done, 20)
+        self.assertGreater(done, 10)
 
 
 if __name__ == "__main__":

@@ -139,7 +139,7 @@ Json roughOutdoors() {
 
 std::unique_ptr<const AuditScene> make(const char* name, const char* holds, Json dictionary) {
     Scene scene = SceneDescription::fromNode(JsonNode(dictionary), ".").build();
-    return std::make_unique<const AuditScene>(name, holds, std::move(dictionary), std::move(scene), PathLimits{6, 3});
+    return std::unique_ptr<const AuditScene>(new AuditScene{name, holds, std::move(dictionary), std::move(scene), {6, 3}});
 }
 
 std::vector<std::unique_ptr<const AuditScene>> makeAll() {

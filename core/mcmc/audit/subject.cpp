@@ -87,9 +87,9 @@ States drawStates(const AuditScene& scene, const Subject& subject, RandomKey key
     for (size_t end : {0u, 1u})
         if (found[end]) chosen.push_back(ends[end]);
     const DiscreteDistribution byWeight(weights);
-    const size_t resampled = chosen.size() + (count + 1) / 2;
+    const size_t half = (count + 1) / 2, resampled = chosen.size() + half;
     for (size_t n = 0; chosen.size() < std::min(count, resampled); ++n) {
-        double u = (double(n) + 0.5) / double((count + 1) / 2);
+        double u = (double(n) + 0.5) / double(half);
         chosen.push_back(suitable[byWeight.sample(u)]);
     }
     for (size_t turn = 0; chosen.size() < count; ++turn)

@@ -94,9 +94,9 @@ private:
         refuse("a number, or two or more wavelengths and values such as \"400:0.1, 700:0.5\"", value);
     }
     SpectrumUse use() const {
-        static constexpr std::array kIndices{"eta", "k", "int_ior", "ext_ior"};
+        static constexpr std::array kUnbounded{"eta", "k", "int_ior", "ext_ior"};
         if (context_.emits) return SpectrumUse::Emission;
-        return std::find(kIndices.begin(), kIndices.end(), context_.name) != kIndices.end() ? SpectrumUse::Unbounded : SpectrumUse::Reflectance;
+        return std::find(kUnbounded.begin(), kUnbounded.end(), context_.name) != kUnbounded.end() ? SpectrumUse::Unbounded : SpectrumUse::Reflectance;
     }
 
     Json blackbody() const {
