@@ -1,0 +1,116 @@
+#!/usr/bin/env python3
+"""Other vector instructions in the ray tracer: independent samples make the same image but for rounding, chains the same
+in the mean."""
+
+import math
+import os
+import pathlib
+import statistics
+import struct
+import subprocess
+import tempfile
+import unittest
+import zlib
+
+ULAM = os.path.abspath(os.environ.get("ULAM", "build/release/ulam"))
+HERE = pathlib.Path(__file__).resolve().parent
+SIZE = 32
+# Embree's names; what this processor lacks is left out.
+NEEDED_FLAG = {"sse2": "sse2", "avx2": "avx2", "avx512": "avx512vl"}
+
+
+def processor_flags():
+    for line in pathlib.Path("/proc/cpuinfo").read_text().splitlines():
+        if line.startswith("flags"):
+            return line.split()
+    return []
+
+
+def read_exr(file):
+    """The floats of an EXR of scan lines, uncompressed or zipped, line by line, channel after channel."""
+    data = file.read_bytes()
+    at, attributes = 8, {}
+    while data[at]:
+        name_end = data.index(0, at)
+        type_end = data.index(0, name_end + 1)
+        size, = struct.unpack_from("<i", data, type_end + 1)
+        attributes[data[at:name_end].decode()] = data[type_end + 5:type_end + 5 + size]
+        at = type_end + 5 + size
+    at += 1
+    lines = {0: 1, 2: 1, 3: 16}[attributes["compression"][0]]
+    chunks = -(-SIZE // lines)
+    values = []
+    for offset in struct.unpack_from(f"<{chunks}Q", data, at):
+        _, size = struct.unpack_from("<ii", data, offset)
+        chunk = data[offset + 8:offset + 8 + size]
+        if size < min(lines, SIZE) * SIZE * 12:
+            delta = bytearray(zlib.decompress(chunk))
+            for i in range(1, len(delta)):
+                delta[i] = (delta[i - 1] + delta[i] - 128) & 255
+            half = (len(delta) + 1) // 2
+            chunk = bytearray(len(delta))
+            chunk[0::2], chunk[1::2] = delta[:half], delta[half:]
+        values += struct.unpack(f"<{len(chunk) // 4}f", chunk)
+    return values
+
+
+class Simd(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        temporary = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(temporary.cleanup)
+        cls.folder = pathlib.Path(temporary.name)
+        cls.preload = cls.folder / "isa.so"
+        subprocess.run([os.environ.get("CC", "cc"), "-shared", "-fPIC", "-o", cls.preload, HERE / "isa.c", "-ldl"], check=True)
+        flags = processor_flags()
+        cls.instructions = [isa for isa, flag in NEEDED_FLAG.items() if flag in flags]
+        if len(cls.instructions) < 2:
+            raise unittest.SkipTest("the processor has one vector width")
+
+    def render(self, isa, scene, sampler, *arguments):
+        output = self.folder / "image.exr"
+        environment = dict(os.environ, ULAM_TEST_ISA=isa, LD_PRELOAD=str(self.preload))
+        subprocess.run([ULAM, "render", scene, "--sampler", sampler, "--threads", "1", "--quiet", "-o", output,
+                        "--set", f"scene.film.width={SIZE}", "--set", f"scene.film.height={SIZE}", *map(str, arguments)],
+                       check=True, env=environment)
+        return read_exr(output)
+
+    def test_independent_samples_differ_by_rounding_but_in_a_few_pixels(self):
+        first, *others = self.instructions
+        differ = False
+        for scene in "cornell_box", "torus_in_glass":
+            for sampler in "path", "bdpt":
+                image = self.render(first, scene, sampler, "--spp", 16)
+                self.assertEqual(len(image), 3 * SIZE * SIZE)
+                scale = statistics.fmean(image)
+                self.assertGreater(scale, 0)
+                for isa in others:
+                    other = self.render(isa, scene, sampler, "--spp", 16)
+                    differ = differ or other != image
+                    far = sum(abs(a - b) > 1e-3 * (abs(a) + scale) for a, b in zip(image, other))
+                    # A ray along an edge takes another side; from there on the path is another.
+                    self.assertLessEqual(far, 0.02 * len(image), (scene, sampler, first, isa))
+        self.assertTrue(differ, "other instructions were not used")
+
+    def test_chains_agree_in_the_mean(self):
+        replicates, tiles = 8, 4
+        means = {}
+        for k, isa in enumerate((self.instructions[0], self.instructions[-1])):
+            for sampler in "mlt", "pssmlt":
+                for seed in range(replicates):
+                    image = self.render(isa, "cornell_box", sampler, "--mutations", 20000, "--seed", 1 + seed + 100 * k)
+                    part = len(image) // tiles
+                    means.setdefault((sampler, isa), []).append(
+                        [statistics.fmean(image[i * part:(i + 1) * part]) for i in range(tiles)])
+        for sampler in "mlt", "pssmlt":
+            a, b = (means[sampler, isa] for isa in (self.instructions[0], self.instructions[-1]))
+            for tile in range(tiles):
+                x, y = [run[tile] for run in a], [run[tile] for run in b]
+                error = math.sqrt((statistics.variance(x) + statistics.variance(y)) / replicates)
+                t = (statistics.fmean(x) - statistics.fmean(y)) / error
+                # 8 replicates a side: at least 7 degrees of freedom, where p is about 1e-5.
+                self.assertLess(abs(t), 10.5, (sampler, tile, t))
+
+
+if __name__ == "__main__":
+    unittest.main()
