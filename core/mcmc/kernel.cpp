@@ -36,6 +36,8 @@ void Kernel::step(Chain& chain, Target& target, StepContext& context, StepObserv
     takeCause();  // of what came before
     StepInfo info;
     if (!(chain.z > 0)) {
+        checkFinite(Cause::Mutation, chain.z);
+        info.cause = takeCause();
         observer.observe(chain, Proposal(Reject::ZeroTarget), info);
         return;
     }

@@ -338,7 +338,7 @@ void ChainRun::step(Worker& w, Chain& chain, StepObserver& observer) {
 }
 
 void ChainRun::logNonFinite(Worker& w, const Chain& chain, uint64_t unit) {
-    const std::string of = w.cause == Cause::Mutation ? " " + mix_[size_t(w.last)].name : "";
+    const std::string of = w.cause == Cause::Mutation && w.last >= 0 ? " " + mix_[size_t(w.last)].name : "";
     w.nonFinite.add({NonFiniteEvent::Kind::Step, unit, chain.index, chain.step, name(w.cause) + of});
 }
 

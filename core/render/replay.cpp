@@ -126,6 +126,7 @@ Json describeSample(const Scene& scene, const BidirectionalOptions& options, con
     BidirectionalSampler sampler(scene, options);
     sampler.sample(where, numbers, [&](const Contribution& c) {
         Json one = {{"s", c.technique.s}, {"t", c.technique.t}, {"value", color(c.value)}, {"weight", number(c.weight)}};
+        tellCause(one);
         if (!isFinite(c.value)) {
             Path path;
             sampler.join(c.technique, path);
@@ -139,8 +140,8 @@ Json describeSample(const Scene& scene, const BidirectionalOptions& options, con
 
 Json describeStep(const Scene& scene, const BidirectionalOptions& options, const MutationMix& mix, const Chain& before,
                   const Proposal& proposal, const StepInfo& info) {
-    Json json = {{"chain", before.index}, {"step", before.step}, {"rejected", name(info.reject)}, {"cause", name(info.cause)},
-                 {"acceptance", number(info.acceptance)}};
+    Json json = {{"chain", before.index}, {"step", before.step}, {"rejected", name(info.reject)}, {"acceptance", number(info.acceptance)}};
+    if (info.cause != Cause::None) json["refused"] = name(info.cause);
     if (info.mutation >= 0) json["mutation"] = mix[size_t(info.mutation)].name;
     json["log_forward"] = number(proposal.logForward);
     json["log_reverse"] = number(proposal.logReverse);
