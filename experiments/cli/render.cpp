@@ -109,7 +109,7 @@ void renderImage(const RenderArguments& a) {
     const std::string after = !options.checkpoint    ? ""
                               : result.lost.empty() ? fmt::format("; --resume goes on from {}", options.checkpoint->file.string())
                                                     : "; it cannot be resumed: " + result.lost;
-    if (result.interrupted && isBlack(result.image)) failIfSignalled("nothing was found until then, and there is no image" + after);
+    if (result.interrupted && isBlack(result.image)) failIfSignalled("nothing was found until then, and no image is written" + after);
     if (!result.interrupted) refuseBlackImage(run, result);
     for (const std::string& warning : warningsOf(run, result)) progress.message("warning: " + warning);
     const fs::path output = a.output;

@@ -62,7 +62,7 @@ class Files(CliTest):
         process.send_signal(signal.SIGINT)
         _, message = process.communicate(timeout=30)
         self.assertEqual(process.returncode, 130, message)
-        self.assertIn("nothing is written", message)
+        self.assertIn("no image is written", message)
         self.assertEqual((self.folder / "out.exr").read_text(), "old")
         self.assertFalse((self.folder / "out.json").exists())
 
