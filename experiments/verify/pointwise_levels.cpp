@@ -209,14 +209,14 @@ Finding auditDensities(const MutationCase& c) {
         all.merge(tally);
     }
     finding.numbers["histograms"] = std::move(shown);
-    finding.p = -std::expm1(double(p.size()) * std::log1p(-smallest));  // Šidák
-    finding.statistic = smallest;
+    const double adjusted = p.empty() ? 1 : -std::expm1(double(p.size()) * std::log1p(-smallest));  // Šidák
+    if (!p.empty()) finding.p = adjusted, finding.statistic = smallest;
     finding.samples = classes * proposals;
     finding.numbers["tests"] = p.size();
     finding.numbers["most_deviating"] = worst;
     finding.summary = fmt::format("{} tests of {} classes of proposals from {} of {} states, p = {:.2g}", p.size(),
-                                  classes, all.states - all.unjudged, all.states, *finding.p);
-    if (*finding.p < c.ownLevel(kSuiteLevel)) {
+                                  classes, all.states - all.unjudged, all.states, adjusted);
+    if (adjusted < c.ownLevel(kSuiteLevel)) {
         finding.outcome = Outcome::Rejected;
         finding.details.push_back(worst);
     }

@@ -80,6 +80,9 @@ TEST_CASE("What cannot be audited is said") {
     const SubjectReport silent = audited("planted_silent");
     CHECK(findingOf(silent, "balance").outcome == Outcome::NotAudited);
     CHECK(findingOf(silent, "density").outcome == Outcome::NotAudited);
+    CHECK_FALSE(findingOf(silent, "density").p.has_value());
+    CHECK_NOTHROW(dump(toJson(Report{.seed = 1, .level = "quick", .subjects = {silent}})));
+    CHECK(findingOf(silent, "density").outcome == Outcome::NotAudited);
     const SubjectReport nowhere = audited("planted_nowhere");
     REQUIRE(nowhere.findings.size() == 1);
     CHECK(nowhere.findings.front().outcome == Outcome::NotCovered);
