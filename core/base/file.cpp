@@ -42,13 +42,6 @@ private:
     fail(ExitCode::CannotWrite, "cannot write {}: {}", path.string(), reason(error));
 }
 
-int openFile(const std::filesystem::path& path, int flags) {
-    int number = -1;
-    do number = ::open(path.c_str(), flags | O_CLOEXEC, 0666);
-    while (number < 0 && errno == EINTR);
-    return number;
-}
-
 [[noreturn]] void failToRead(const std::filesystem::path& path, int error) {
     const std::string message = fmt::format("cannot read {}: {}", path.string(), reason(error));
     if (error == ENOENT || error == ENOTDIR || error == EISDIR) throw Error(ExitCode::InputMissing, message);
@@ -117,6 +110,13 @@ bool isAbandoned(const std::string& name) {
 }
 
 }  // namespace
+
+int openFile(const std::filesystem::path& path, int flags) {
+    int number = -1;
+    do number = ::open(path.c_str(), flags | O_CLOEXEC, 0666);
+    while (number < 0 && errno == EINTR);
+    return number;
+}
 
 std::string readFile(const std::filesystem::path& path, std::size_t maxBytes) {
     const Descriptor file(openFile(path, O_RDONLY));

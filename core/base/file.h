@@ -19,6 +19,9 @@ public:
     using Error::Error;
 };
 
+/// open(2) again where a signal interrupts it, closed in programs that this one starts; below 0 with errno.
+int openFile(const std::filesystem::path& path, int flags);
+
 /// The bytes of a file. Fails with InputMissing and the system's reason when there is none, with UnreadableFile when it
 /// cannot be read, and with InvalidConfig when it holds more than `maxBytes`.
 std::string readFile(const std::filesystem::path& path, std::size_t maxBytes = std::numeric_limits<std::size_t>::max());

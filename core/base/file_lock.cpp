@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "core/base/error.h"
+#include "core/base/file.h"
 
 namespace ulam {
 namespace {
@@ -19,13 +20,6 @@ int lock(int file, int operation) {
     while (::flock(file, operation) != 0)
         if (errno != EINTR) return errno;
     return 0;
-}
-
-int open(const std::filesystem::path& path, int flags) {
-    int file = -1;
-    do file = ::open(path.c_str(), flags | O_CLOEXEC, 0666);
-    while (file < 0 && errno == EINTR);
-    return file;
 }
 
 [[noreturn]] void failToLock(const std::filesystem::path& file, int error) {
@@ -59,7 +53,7 @@ int writeHolder(int file) {
 }  // namespace
 
 FileLock FileLock::claim(const std::filesystem::path& file) {
-    FileLock claimed(open(file, O_RDWR | O_CREAT));
+    FileLock claimed(openFile(file, O_RDWR | O_CREAT));
     if (!claimed.held()) failToLock(file, errno);
     const int error = lock(claimed.descriptor_, LOCK_EX | LOCK_NB);
     if (error == EWOULDBLOCK)
@@ -70,7 +64,7 @@ FileLock FileLock::claim(const std::filesystem::path& file) {
 }
 
 FileLock FileLock::await(const std::filesystem::path& folder) {
-    FileLock awaited(open(folder.empty() ? "." : folder, O_RDONLY | O_DIRECTORY));
+    FileLock awaited(openFile(folder.empty() ? "." : folder, O_RDONLY | O_DIRECTORY));
     if (awaited.held() && lock(awaited.descriptor_, LOCK_EX) != 0) return FileLock(-1);
     return awaited;
 }

@@ -28,13 +28,14 @@ inline const char* name(Cause cause) {
 
 namespace detail {
 inline constinit thread_local Cause noted = Cause::None;
+/// Notes the cause unless an earlier one is; false. Out of line, to keep the code around the checks small.
+[[gnu::cold, gnu::noinline]] bool note(Cause cause);
 }
 
 /// Whether a value is finite; else its cause is noted, unless an earlier one is. To check several values, give their sum.
 inline bool checkFinite(Cause cause, double sum) {
     if (std::isfinite(sum)) [[likely]] return true;
-    if (detail::noted == Cause::None) detail::noted = cause;
-    return false;
+    return detail::note(cause);
 }
 
 /// The first cause since this was asked last.

@@ -34,14 +34,14 @@ bool sampleScattering(const Scene& scene, Vertex& v, const Vec3f& from, From wal
     return withBsdf(scene, v, dot(v.shadingNormal, from), [&](const auto& bsdf, const LocalFrame& frame) {
         const Vec3f known = frame.toLocal(from);
         const auto sampled = lobe ? bsdf.sampleLobe(known, *lobe, u) : bsdf.sample(known, u);
-        if (!sampled || !checkFinite(Cause::Bsdf, sampled->to.x + sampled->to.y + sampled->to.z)) return false;
+        if (!sampled) return false;
         v.lobe = sampled->lobe;
         const Imath::V3d dk(known), dt(sampled->to);
         const auto& l = walk == From::Light ? dk : dt;
         const auto& c = walk == From::Light ? dt : dk;
         const Spectrum f = bsdf.eval(l, c, v.lobe);
-        if (isBlack(f)) return false;
         out.direction = frame.toWorld(sampled->to);
+        if (!checkFinite(Cause::Bsdf, out.direction.x + out.direction.y + out.direction.z) || isBlack(f)) return false;
         const Vec3f& toLight = walk == From::Light ? from : out.direction;
         out.scattering = checked({f * shadingCorrection(v, toLight), bsdf.pdf(l, c, v.lobe), bsdf.pdf(c, l, v.lobe)});
         return !isBlack(out.scattering.f);

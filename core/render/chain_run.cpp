@@ -414,6 +414,7 @@ void ChainRun::report(uint64_t units, RenderStatistics& s) {
     const Worker& all = gathered();
     for (size_t i = 0; i < mix_.size(); ++i) s.mutationStatistics[mix_[i].name] = all.statistics[i];
     s.nonFinite = all.nonFinite;
+    s.nonFinite.count("deposit", all.film.nonFinite());
     s.featureJumps = all.jumps;
     for (const FixedSum& e : all.featureEnergy) s.featureEnergy.push_back(units > 0 ? e.value() * bootstrap_.mean / double(units) : 0);
     for (const auto& slot : chains_) s.traces.push_back(slot->trace);

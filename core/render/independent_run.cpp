@@ -165,6 +165,7 @@ void IndependentRun::report(uint64_t units, RenderStatistics& statistics) {
     statistics.rays = rays();
     const Worker& all = gathered();
     statistics.nonFinite = all.nonFinite;
+    statistics.nonFinite.count("deposit", all.film.nonFinite());
     for (const FixedSum& e : all.featureEnergy) statistics.featureEnergy.push_back(units > 0 ? e.value() / double(units) : 0);
     if (all.techniques) all.techniques->develop(all.film, scene_.sensor->windowArea() / double(units), statistics.extraImages);
 }

@@ -40,6 +40,10 @@ public:
         first_.push_back(std::move(event));
         keepFirst();
     }
+    /// More of a cause, of which no more is known.
+    void count(const std::string& cause, uint64_t values) {
+        if (values > 0) counts_[cause] += values;
+    }
     /// Takes everything from another and leaves that empty.
     void take(NonFiniteLog& other) {
         for (const auto& [cause, count] : other.counts_) counts_[cause] += count;

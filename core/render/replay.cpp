@@ -1,15 +1,13 @@
 #include "core/render/replay.h"
 
-#include <fmt/format.h>
+#include "core/config/json_number.h"
 
 namespace ulam {
 namespace {
 
-/// JSON has no word for what is not finite.
-Json number(double x) { return std::isfinite(x) ? Json(x) : Json(fmt::format("{}", x)); }
-Json vector(const Vec3f& v) { return {number(v.x), number(v.y), number(v.z)}; }
-Json color(const Spectrum& c) { return {number(c.x), number(c.y), number(c.z)}; }
-Json raster(const Vec2f& r) { return {number(r.x), number(r.y)}; }
+Json vector(const Vec3f& v) { return {numberOrText(v.x), numberOrText(v.y), numberOrText(v.z)}; }
+Json color(const Spectrum& c) { return {numberOrText(c.x), numberOrText(c.y), numberOrText(c.z)}; }
+Json raster(const Vec2f& r) { return {numberOrText(r.x), numberOrText(r.y)}; }
 
 Json describe(const Scene& scene, const Vertex& v) {
     constexpr const char* kinds[] = {"surface", "lens", "point", "infinite", "direction"};
@@ -20,7 +18,7 @@ Json describe(const Scene& scene, const Vertex& v) {
         json["shading_normal"] = vector(v.shadingNormal);
         json["shape"] = v.shape;
         json["primitive"] = v.primitive;
-        json["uv"] = {number(v.uv.x), number(v.uv.y)};
+        json["uv"] = {numberOrText(v.uv.x), numberOrText(v.uv.y)};
         json["lobe"] = lobes[int(v.lobe)];
     }
     if (const uint32_t e = scene.emitterAt(v); e != kNone) json["emitter"] = e;
@@ -35,7 +33,7 @@ Json describeWalk(const Scene& scene, const Subpath& walk) {
     Json vertices = Json::array();
     for (int i = 0; i < walk.size; ++i) {
         Json v = describe(scene, walk.vertex[size_t(i)]);
-        v["density"] = number(walk.forward[size_t(i)]);
+        v["density"] = numberOrText(walk.forward[size_t(i)]);
         v["throughput"] = color(walk.throughput[size_t(i)]);
         vertices.push_back(std::move(v));
     }
@@ -43,14 +41,14 @@ Json describeWalk(const Scene& scene, const Subpath& walk) {
 }
 
 Json describeState(const Scene& scene, const BidirectionalOptions& options, const Sample& x) {
-    Json json = {{"log_target", number(x.logTarget)}};
+    Json json = {{"log_target", numberOrText(x.logTarget)}};
     if (x.path.size() >= 2) json["path"] = describePath(scene, options.limits, x.path);
     if (x.u.size(NumberStream::Camera) == 0 || x.path.size() > 0) return json;
     Json& all = json["numbers"] = Json::object();
     constexpr const char* streams[] = {"light", "camera", "connect"};
     for (const NumberStream s : {NumberStream::Light, NumberStream::Camera, NumberStream::Connect})
         for (int i = 0; i < x.u.size(s); ++i)
-            for (const double u : x.u(s, i)) all[streams[int(s)]].push_back(number(u));
+            for (const double u : x.u(s, i)) all[streams[int(s)]].push_back(numberOrText(u));
     PrimaryVector u = x.u;
     Random none;
     Numbers numbers(u, none);
@@ -71,7 +69,7 @@ Json describePath(const Scene& scene, const PathLimits& limits, const Path& path
         Json v = describe(scene, path[i]);
         if (i < k) {
             const Edge& edge = factors.edge[size_t(i)] = Edge(path[i], path[i + 1]);
-            json["edges"].push_back({{"direction", vector(edge.direction)}, {"geometry", number(edge.geometry())}});
+            json["edges"].push_back({{"direction", vector(edge.direction)}, {"geometry", numberOrText(edge.geometry())}});
             finite = finite && std::isfinite(edge.geometry());
         }
         Scattering& at = factors.at[size_t(i)];
@@ -86,8 +84,8 @@ Json describePath(const Scene& scene, const PathLimits& limits, const Path& path
             at = scatter(scene, path[i], path[i].lobe, -factors.edge[size_t(i - 1)].direction, factors.edge[size_t(i)].direction);
         }
         v["f"] = color(at.f);
-        v["pdf_to_camera"] = number(at.pdfToCamera);
-        v["pdf_to_light"] = number(at.pdfToLight);
+        v["pdf_to_camera"] = numberOrText(at.pdfToCamera);
+        v["pdf_to_light"] = numberOrText(at.pdfToLight);
         tellCause(v);
         finite = finite && !v.contains("refused");
         json["vertices"].push_back(std::move(v));
@@ -96,13 +94,13 @@ Json describePath(const Scene& scene, const PathLimits& limits, const Path& path
     if (!finite) return json;
     const PathDensities d = densities(scene, limits, path, factors);
     for (int i = 0; i <= k; ++i) {
-        json["vertices"][size_t(i)]["density_from_light"] = number(d.fromLight[size_t(i)]);
-        json["vertices"][size_t(i)]["density_from_camera"] = number(d.fromCamera[size_t(i)]);
+        json["vertices"][size_t(i)]["density_from_light"] = numberOrText(d.fromLight[size_t(i)]);
+        json["vertices"][size_t(i)]["density_from_camera"] = numberOrText(d.fromCamera[size_t(i)]);
     }
     for (int s = 0; s < d.size; ++s)
         if (d.possible(s) && std::isfinite(d.log(s)))
-            json["techniques"].push_back({{"s", s}, {"t", d.size - s}, {"log_density", number(d.log(s))},
-                                          {"weight", number(d.weight(s, {}, Heuristic::Balance))}});
+            json["techniques"].push_back({{"s", s}, {"t", d.size - s}, {"log_density", numberOrText(d.log(s))},
+                                          {"weight", numberOrText(d.weight(s, {}, Heuristic::Balance))}});
     tellCause(json);
     return json;
 }
@@ -125,7 +123,7 @@ Json describeSample(const Scene& scene, const BidirectionalOptions& options, con
     Json& contributions = json["contributions"] = Json::array();
     BidirectionalSampler sampler(scene, options);
     sampler.sample(where, numbers, [&](const Contribution& c) {
-        Json one = {{"s", c.technique.s}, {"t", c.technique.t}, {"value", color(c.value)}, {"weight", number(c.weight)}};
+        Json one = {{"s", c.technique.s}, {"t", c.technique.t}, {"value", color(c.value)}, {"weight", numberOrText(c.weight)}};
         tellCause(one);
         if (!isFinite(c.value)) {
             Path path;
@@ -140,12 +138,12 @@ Json describeSample(const Scene& scene, const BidirectionalOptions& options, con
 
 Json describeStep(const Scene& scene, const BidirectionalOptions& options, const MutationMix& mix, const Chain& before,
                   const Proposal& proposal, const StepInfo& info) {
-    Json json = {{"chain", before.index}, {"step", before.step}, {"rejected", name(info.reject)}, {"acceptance", number(info.acceptance)}};
+    Json json = {{"chain", before.index}, {"step", before.step}, {"rejected", name(info.reject)}, {"acceptance", numberOrText(info.acceptance)}};
     if (info.cause != Cause::None) json["refused"] = name(info.cause);
     if (info.mutation >= 0) json["mutation"] = mix[size_t(info.mutation)].name;
-    json["log_forward"] = number(proposal.logForward);
-    json["log_reverse"] = number(proposal.logReverse);
-    json["log_jacobian"] = number(proposal.logJacobian);
+    json["log_forward"] = numberOrText(proposal.logForward);
+    json["log_reverse"] = numberOrText(proposal.logReverse);
+    json["log_jacobian"] = numberOrText(proposal.logJacobian);
     json["current"] = describeState(scene, options, before.x);
     json["proposal"] = describeState(scene, options, proposal.y);
     return json;

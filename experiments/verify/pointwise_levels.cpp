@@ -1,5 +1,6 @@
 // Levels that look at single proposals.
 
+#include "core/config/json_number.h"
 #include "core/mcmc/audit/balance.h"
 #include "core/mcmc/audit/density.h"
 #include "core/mcmc/audit/jacobian.h"
@@ -16,9 +17,6 @@ constexpr uint64_t kChunk = 500;
 
 const char* nameOf(Space space) {
     return space == Space::Path ? "paths" : "numbers";
-}
-Json finite(double x) {
-    return std::isfinite(x) ? Json(x) : Json(fmt::format("{}", x));
 }
 void notAudited(Finding& finding, const char* why) {
     finding.outcome = Outcome::NotAudited;
@@ -113,7 +111,7 @@ Finding auditBalance(const MutationCase& c) {
         take(finding, place.text, tally.failures);
         finding.numbers[place.text] = {{"steps", tally.steps},
                                        {"pairs", tally.pairs},
-                                       {"worst_residual", finite(tally.worst)},
+                                       {"worst_residual", numberOrText(tally.worst)},
                                        {"worst_trial", tally.worstTrial}};
         all.merge(tally);
     }
@@ -205,7 +203,7 @@ Finding auditDensities(const MutationCase& c) {
         finding.numbers[place.text] = {{"states", tally.states},
                                        {"states_not_judged", tally.unjudged},
                                        {"classes", tally.tests.size()},
-                                       {"largest_error_of_a_mass", finite(deviation)}};
+                                       {"largest_error_of_a_mass", numberOrText(deviation)}};
         all.merge(tally);
     }
     finding.numbers["histograms"] = std::move(shown);

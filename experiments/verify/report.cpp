@@ -3,17 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+
+#include "core/config/json_number.h"
 
 namespace ulam::verify {
-
-namespace {
-
-Json finite(double x) {
-    return std::isfinite(x) ? Json(x) : Json(fmt::format("{}", x));
-}
-
-}  // namespace
 
 const char* name(Outcome outcome) {
     constexpr const char* names[] = {"passed", "rejected", "not audited", "reported", "not covered"};
@@ -48,7 +41,7 @@ Json toJson(const Report& report) {
                                 {"check", f.check},
                                 {"outcome", name(f.outcome)},
                                 {"summary", f.summary},
-                                {"statistic", f.statistic ? finite(*f.statistic) : Json()},
+                                {"statistic", f.statistic ? numberOrText(*f.statistic) : Json()},
                                 {"p", f.p ? Json(*f.p) : Json()},
                                 {"samples", f.samples},
                                 {"details", f.details},
