@@ -18,7 +18,7 @@ enum class Cause : uint8_t {
     Sensor,        ///< an importance or density of the camera
     Target,        ///< π
     Mutation,      ///< what a mutation proposed: numbers, suitability, densities
-    Contribution,  ///< the product of finite factors, or one too large to be added up
+    Contribution,  ///< the product of finite factors
 };
 
 inline const char* name(Cause cause) {

@@ -4,7 +4,6 @@
 #include "core/render/replay.h"
 #include "core/render/technique_films.h"
 
-#include <limits>
 #include <numeric>
 
 namespace ulam {
@@ -33,7 +32,6 @@ private:
     Path path_;
 };
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kTile = 16;  // pixels a side: what a chunk of samples covers
 
 }  // namespace
@@ -71,8 +69,7 @@ struct IndependentRun::Worker : ContributionSink {
     }
 
     void add(const Contribution& c, uint32_t feature) override {
-        const double largest = std::abs(c.value.x) + std::abs(c.value.y) + std::abs(c.value.z);
-        if (!checkFinite(Cause::Contribution, largest < FixedSum::kLargestTerm ? largest : kInfinity)) return;
+        if (!checkFinite(Cause::Contribution, c.value.x + c.value.y + c.value.z)) return;
         if (c.technique.t == 1) splats.add(c.raster, c.value);
         else sum += c.value;
         if (techniques) techniques->add(c, pixel);
