@@ -187,9 +187,9 @@ std::string toHtml(const Report& report) {
     for (const SubjectReport& s : report.subjects) body += section(s);
     return fmt::format("<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">"
                        "<title>Audit</title><style>{}{}</style></head>\n<body><header><p class=\"kind\">Ulam</p><h1>Audit: {}</h1>"
-                       "<p class=\"subtitle\">{} subjects, level {}, seed {}</p></header>\n{}{}</body></html>\n",
+                       "<p class=\"subtitle\">{} subject{}, level {}, seed {}</p></header>\n{}{}</body></html>\n",
                        page::kStyle, kStyle, rejected == 0 ? "nothing is rejected" : fmt::format("{} of {} rejected", rejected, report.subjects.size()),
-                       report.subjects.size(), report.level, report.seed, overview(report), body);
+                       report.subjects.size(), report.subjects.size() == 1 ? "" : "s", report.level, report.seed, overview(report), body);
 }
 
 }  // namespace ulam::verify
