@@ -98,15 +98,15 @@ Finding invariance(const MutationCase& c, bool mixed) {
     return finding;
 }
 
-/// Sampler and budget of the image runs in a place.
+/// Sampler and budget of the image runs in a place, at `factor` times the work.
 struct ImageRun {
-    ImageRun(const MutationCase& c, const Place& place, bool mixed) {
+    ImageRun(const MutationCase& c, const Place& place, bool mixed, double factor = 1) {
         const Work& work = c.work();
         const bool onPaths = place.target == Space::Path;
         sampler = samplerConfig(onPaths ? "mlt" : "pssmlt", *place.scene);
-        budget.mutations = onPaths ? work.pathMutations : work.primaryMutations;
+        budget.mutations = factor * (onPaths ? work.pathMutations : work.primaryMutations);
         sampler["chains"] = std::llround(*budget.mutations / kStepsPerChain);
-        sampler["bootstrap"] = std::llround(work.bootstrap);
+        sampler["bootstrap"] = std::llround(std::max(1000.0, work.bootstrap * factor));
         sampler["mutations"] = mixOf(c, place.target, mixed);
         text = fmt::format("{} by {}, {}", place.scene->name, onPaths ? "mlt" : "pssmlt", mixed ? "mixed" : "alone");
     }
@@ -120,11 +120,17 @@ Finding images(const MutationCase& c, References& references, bool mixed) {
     const auto& scenes = mixed ? work.mixedImages : work.aloneImages;
     std::vector<ImageComparison> comparisons;
     for (const Place& place : c.places) {
-        if (std::find(scenes.begin(), scenes.end(), place.scene->name) == scenes.end()) continue;
-        const ImageRun run(c, place, mixed);
-        const TiledEstimate runs = renderTiled(place.scene->scene, run.sampler, run.budget, work.runs, c.settings.seed,
-                                               cellOf(c.name + run.text), c.settings.threads);
-        comparisons.push_back(compare(run.text, runs, references(*place.scene)));
+        const auto scene = std::find(scenes.begin(), scenes.end(), place.scene->name);
+        if (scene == scenes.end()) continue;
+        const size_t turn = size_t(scene - scenes.begin()) + size_t(mixed);
+        if (!work.imagesOfAllTargets && place.target != c.targets[turn % c.targets.size()]) continue;
+        const auto render = [&](double factor, int runs, const char* part) {
+            const ImageRun run(c, place, mixed, factor);
+            return renderTiled(place.scene->scene, run.sampler, run.budget, runs, c.settings.seed,
+                               cellOf(c.name + run.text + part), c.settings.threads);
+        };
+        const TiledEstimate runs = preciseRuns(work, render, kPilotShare);
+        comparisons.push_back(compare(ImageRun(c, place, mixed).text, runs, references(*place.scene)));
     }
     Finding finding = judgeImages(comparisons, work);
     if (mixed) finding.level = "L6", finding.check = "mixed images";

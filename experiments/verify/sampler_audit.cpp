@@ -27,18 +27,15 @@ std::string compareSampler(Json config, const audit::AuditScene& scene, const st
         return renderTiled(scene.scene, config, scaled(budget, factor), runs, settings.seed,
                            cellOf(place + part), settings.threads);
     };
-    TiledEstimate pilot;
     try {
-        pilot = render(kPilotShare, kPilotRuns, " pilot");
+        const TiledEstimate runs = preciseRuns(work, render, kPilotShare);
+        if (!runs.biasLedger.empty()) return runs.biasLedger.front();
+        comparisons.push_back(compare(place, runs, references(scene)));
     } catch (const Error& error) {
         // A sampler may need what an audit scene does not have.
         if (error.code() == ExitCode::InvalidConfig) return error.what();
         throw;
     }
-    if (!pilot.biasLedger.empty()) return pilot.biasLedger.front();
-    const double factor = neededWork(pilot.energy, work);
-    comparisons.push_back(
-        compare(place, render(std::clamp(factor, kPilotShare, kMostGrowth), work.runs, ""), references(scene)));
     return {};
 }
 

@@ -14,6 +14,7 @@ Work quickWork() {
     w.bootstrap = 20'000, w.pathMutations = 64'000, w.primaryMutations = 16'384, w.samplesPerPixel = 24;
     w.energyWidth = 0.005;
     w.aloneImages = {"specular", "outdoor"}, w.mixedImages = {"specular"};
+    w.imagesOfAllTargets = false;
     w.partners = 3;
     w.mixingChains = 100, w.mixingSteps = 1024;
     return w;
@@ -28,6 +29,7 @@ Work fullWork() {
     w.bootstrap *= 25, w.pathMutations *= 25, w.primaryMutations *= 25, w.samplesPerPixel *= 25;
     w.energyWidth = 0.001;
     w.aloneImages = w.mixedImages = {"diffuse", "specular", "outdoor"};
+    w.imagesOfAllTargets = true;
     w.partners = 100;
     w.mixingSteps *= 20;
     return w;
@@ -48,14 +50,27 @@ const TiledEstimate& References::operator()(const audit::AuditScene& scene) {
         return renderTiled(scene.scene, samplerConfig("bdpt", scene), budget, runs, seed_,
                            cellOf("reference " + scene.name + part), threads_);
     };
-    const double factor = neededWork(render(kPilotShare, kPilotRuns, " pilot").energy, work_);
-    return made_[scene.name] = render(std::clamp(factor, 1.0, kMostGrowth), work_.runs, "");
+    // At least the whole work: every comparison of tiles depends on it.
+    return made_[scene.name] = preciseRuns(work_, render, 1);
 }
 
-double neededWork(const statistics::MeanEstimate& pilot, const Work& work) {
-    // Half of the interval's square is the runs', the other half the reference's.
-    const double allowed = work.energyWidth * pilot.mean / statistics::studentQuantile(2.0 * (work.runs - 1), 1 - (1 - kEnergyConfidence) / 2);
-    return kPilotShare * kPilotRuns / work.runs * kSafety * pilot.varianceOfMean / (allowed * allowed / 2);
+TiledEstimate preciseRuns(const Work& work, const MakeRuns& make, double leastFactor) {
+    constexpr int kPilotRuns = 12;
+    constexpr double kMostGrowth = 400, kSafety = 1.4;
+    double factor = kPilotShare;
+    int count = kPilotRuns;
+    TiledEstimate runs = make(factor, count, " pilot");
+    for (const char* part : {"", " again", " once more"}) {
+        if (!runs.biasLedger.empty()) break;
+        const double halfWidth = work.energyWidth * runs.energy.mean;
+        // Half of the interval's square is the runs', the other half the reference's.
+        const double deviation = halfWidth / statistics::studentQuantile(2.0 * (work.runs - 1), 1 - (1 - kEnergyConfidence) / 2);
+        const double allowed = deviation * deviation / 2;
+        factor = std::clamp(factor * count / work.runs * kSafety * runs.energy.varianceOfMean / allowed, leastFactor, kMostGrowth);
+        runs = make(factor, work.runs, part), count = work.runs;
+        if (runs.energy.varianceOfMean <= allowed) break;
+    }
+    return runs;
 }
 
 Json samplerConfig(const std::string& sampler, const audit::AuditScene& scene) {

@@ -1,6 +1,7 @@
 #pragma once
 // How much the audit does, and what its parts share.
 
+#include <functional>
 #include <map>
 #include <string_view>
 
@@ -25,6 +26,7 @@ struct Work {
     double bootstrap, pathMutations, primaryMutations, samplesPerPixel;  ///< each run
     double energyWidth;                                 ///< largest half width of the energy interval, relative
     std::vector<std::string> aloneImages, mixedImages;  ///< scenes of L5 and L6
+    bool imagesOfAllTargets;  ///< or of one in each scene, in turn
     size_t partners;                                    ///< of L6
     int mixingChains;                                   ///< of L7
     double mixingSteps;                                 ///< of each
@@ -43,11 +45,13 @@ struct AuditSettings {
 /// Chooses the random numbers of a part of the audit by its name.
 uint64_t cellOf(std::string_view name);
 
-// Runs of a share of the work that say how much is needed: scenes and samplers differ widely in variance.
-inline constexpr int kPilotRuns = 12;
-inline constexpr double kPilotShare = 0.05, kMostGrowth = 400, kSafety = 1.6;
-/// How much of the work, in units of it, makes the energy interval narrow enough, judged by a pilot.
-double neededWork(const statistics::MeanEstimate& pilot, const Work& work);
+/// Makes runs of `factor` times the work; `part` chooses their random numbers.
+using MakeRuns = std::function<TiledEstimate(double factor, int runs, const char* part)>;
+/// Runs that make the energy interval narrow enough: a pilot says how much work that takes, since scenes and samplers
+/// differ widely in variance. Runs that say themselves that they are biased are returned as they are.
+TiledEstimate preciseRuns(const Work& work, const MakeRuns& make, double leastFactor);
+/// How small a factor may get, with which the pilot is made.
+inline constexpr double kPilotShare = 0.05;
 
 /// Images by bidirectional path tracing, made when they are asked for first; precise enough for the energy interval.
 class References {

@@ -14,7 +14,7 @@ using namespace ulam::verify;
 
 namespace {
 
-/// A tenth of the quick level; the energy interval is as much wider.
+/// A tenth of the quick level; the energy interval is twice as wide.
 Work smallWork() {
     Work w = quickWork();
     w.seedSamples = 2000, w.states = 100;
@@ -22,7 +22,7 @@ Work smallWork() {
     w.densityStates = 3, w.density = 5000;
     w.starts = 10'000, w.ranks = 5000;
     w.bootstrap = 4000, w.pathMutations = 12'800, w.primaryMutations = 4096, w.samplesPerPixel = 6;
-    w.energyWidth = 0.02;
+    w.energyWidth = 0.01;
     w.partners = 1;  // others that are registered here have planted bugs
     w.aloneImages = {"specular"}, w.mixedImages = {"outdoor"};
     return w;

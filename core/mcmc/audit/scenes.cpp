@@ -65,6 +65,8 @@ Json specularBox() {
     Json scene = box();
     scene["mirror"] = block({{"type", "conductor"}});
     scene["glass"] = sphere(-0.35, -0.55, 0.25, 0.4, {{"type", "dielectric"}});
+    // Radiance inside glass is scaled by its index, which shows on what is inside.
+    scene["core"] = sphere(-0.35, -0.6, 0.25, 0.2, diffuse(0.7, 0.6, 0.2));
     return scene;
 }
 
@@ -137,6 +139,34 @@ Json roughOutdoors() {
     return scene;
 }
 
+/// Textures in the light of a clear sky and the sun; a wide filter around a crop window, whose border cuts a lamp.
+Json texturedOutdoors() {
+    const auto checks = [](std::vector<double> a, std::vector<double> b, double times) {
+        return Json{{"type", "checkerboard"}, {"color0", a}, {"color1", b}, {"to_uv", Json::array({scale(times, times, 1)})}};
+    };
+    Json scene = {{"type", "scene"}, {"sensor", camera(0, 0.5, 4, 40)}};
+    scene["sensor"]["film"] = {{"type", "hdrfilm"},
+                               {"width", kFilmSize + 16},
+                               {"height", kFilmSize + 14},
+                               {"crop_width", kFilmSize},
+                               {"crop_height", kFilmSize},
+                               {"crop_offset_x", 10},
+                               {"crop_offset_y", 3},
+                               {"rfilter", {{"type", "gaussian"}, {"stddev", 0.8}}}};
+    scene["ground"] = shape("rectangle", {scale(5, 5, 1), rotate('x', -90), translate(0, -0.7, 0)},
+                            {{"type", "diffuse"}, {"reflectance", checks({0.7, 0.5, 0.3}, {0.1, 0.2, 0.3}, 8)}});
+    scene["ball"] = sphere(-0.9, -0.2, 0.2, 0.5,
+                           {{"type", "roughplastic"},
+                            {"alpha", 0.3},
+                            {"diffuse_reflectance", checks({0.6, 0.1, 0.1}, {0.2, 0.2, 0.7}, 1)}});
+    scene["lamp"] = shape("rectangle", {scale(0.3, 0.3, 1), translate(1.05, 0.25, 0)}, diffuse(0, 0, 0));
+    scene["lamp"]["emitter"] = {{"type", "area"}, {"radiance", {1.5, 1.2, 1}}};
+    scene["sky"] = {{"type", "sunsky"},     {"sun_direction", {0.4, 0.7, 0.5}},
+                    {"sky_scale", 4},       {"sun_aperture", 5},
+                    {"to_world", Json::array({rotate('x', -90)})}};
+    return scene;
+}
+
 std::unique_ptr<const AuditScene> make(const char* name, const char* holds, Json dictionary) {
     Scene scene = SceneDescription::fromNode(JsonNode(dictionary), ".").build();
     return std::unique_ptr<const AuditScene>(new AuditScene{name, holds, std::move(dictionary), std::move(scene), {6, 3}});
@@ -149,6 +179,7 @@ std::vector<std::unique_ptr<const AuditScene>> makeAll() {
     scenes.push_back(make("outdoor", "point light, environment, smooth normals", outdoors()));
     scenes.push_back(make("lens", "the specular box through a thin lens, with a spot and a cut-out sheet", throughLens()));
     scenes.push_back(make("rough", "rough metal and glass, coats, a pane, in the sun", roughOutdoors()));
+    scenes.push_back(make("textured", "textures under a clear sky, a wide filter, a crop window, a lamp on its border", texturedOutdoors()));
     return scenes;
 }
 
