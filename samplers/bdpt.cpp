@@ -20,6 +20,9 @@ public:
     };
     explicit Bdpt(const Parameters& p) : parameters_(p) {}
 
+    std::vector<MemoryPhase> memory(const RunContext& context) const override {
+        return IndependentRun::memory(context, {.splats = true, .techniqueDepth = parameters_.techniqueImages ? parameters_.limits.maxDepth : 0});
+    }
     std::unique_ptr<SamplerRun> start(const RunContext& context) const override {
         BidirectionalOptions options;
         options.limits = parameters_.limits;

@@ -18,6 +18,9 @@ public:
     };
     explicit LightTracer(const Parameters& p) : parameters_(p) {}
 
+    std::vector<MemoryPhase> memory(const RunContext& context) const override {
+        return IndependentRun::memory(context, {.samples = false, .splats = true});
+    }
     std::unique_ptr<SamplerRun> start(const RunContext& context) const override {
         BidirectionalOptions options;
         options.limits = parameters_.limits;

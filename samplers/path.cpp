@@ -18,6 +18,9 @@ public:
     };
     explicit PathTracer(const Parameters& p) : parameters_(p) {}
 
+    std::vector<MemoryPhase> memory(const RunContext& context) const override {
+        return IndependentRun::memory(context, {});
+    }
     std::unique_ptr<SamplerRun> start(const RunContext& context) const override {
         const Heuristic heuristic = parameters_.heuristic == "power" ? Heuristic::Power : Heuristic::Balance;
         auto run = std::make_unique<IndependentRun>(

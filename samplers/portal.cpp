@@ -85,6 +85,9 @@ public:
     };
     explicit Portal(const Parameters& p) : parameters_(p) {}
 
+    std::vector<MemoryPhase> memory(const RunContext& context) const override {
+        return IndependentRun::memory(context, {});
+    }
     std::unique_ptr<SamplerRun> start(const RunContext& context) const override {
         const Scene& scene = context.scene;
         if (scene.features.empty()) fail(ExitCode::InvalidConfig, "the sampler portal needs a scene with features, such as the generator grid_of_holes");

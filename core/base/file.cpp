@@ -13,6 +13,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/memory.h"
+
 namespace ulam {
 namespace {
 
@@ -123,8 +125,12 @@ std::string readFile(const std::filesystem::path& path, std::size_t maxBytes) {
     if (file.number() < 0) failToRead(path, errno);
     std::string bytes;
     struct stat status {};
-    if (::fstat(file.number(), &status) == 0 && S_ISREG(status.st_mode))
-        bytes.reserve(std::min(maxBytes, static_cast<std::size_t>(status.st_size)));
+    if (::fstat(file.number(), &status) == 0 && S_ISREG(status.st_mode)) {
+        constexpr std::size_t kLarge = 16 << 20;
+        const std::size_t size = std::min(maxBytes, static_cast<std::size_t>(status.st_size));
+        if (size > kLarge) requireMemory("reading " + path.string(), {}, {{"the file", double(size), "a smaller file"}});
+        bytes.reserve(size);
+    }
     char block[1 << 16];
     for (;;) {
         const ssize_t count = ::read(file.number(), block, sizeof block);

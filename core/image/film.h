@@ -76,6 +76,12 @@ public:
         a(samples_, splats_, counts_, nonFinite_);
     }
     uint64_t nonFinite() const { return nonFinite_; }
+    /// That a film takes once it has been given samples, splats or both.
+    static double bytes(double pixels, bool samples, bool splats) {
+        constexpr double kPlane = sizeof(std::array<FixedSum, 3>);
+        return pixels * ((samples ? kPlane : 0) + (splats ? kPlane : 0));
+    }
+    static double countBytes(double pixels) { return pixels * sizeof(uint32_t); }
 
     /// Means of the samples plus splatScale × splats.
     Image develop(double splatScale) const { return developCountedBy(*this, splatScale); }

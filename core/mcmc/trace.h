@@ -10,6 +10,7 @@ namespace ulam {
 class ChainTrace {
 public:
     static constexpr int kScalars = 5;
+    static constexpr size_t kMost = 256;  ///< states that are kept
     static constexpr const char* kNames[kScalars] = {"raster_x", "raster_y", "log_target", "path_length", "feature"};
     using Draw = std::array<float, kScalars>;
 
@@ -38,7 +39,6 @@ public:
     const std::vector<Draw>& draws() const { return draws_; }
 
 private:
-    static constexpr size_t kMost = 256;
     Vec2f origin_{0, 0};
     std::vector<Draw> draws_;
     uint64_t turn_ = 0, stride_ = 1;

@@ -167,6 +167,32 @@ ChainRun::ChainRun(const RunContext& context, const ChainParameters& parameters,
 
 ChainRun::~ChainRun() = default;
 
+std::vector<MemoryPhase> ChainRun::memory(const RunContext& context, const ChainParameters& parameters) {
+    constexpr double kMostPerSecond = 1e6;  // bootstrap samples of a thread
+    double samples = double(parameters.bootstrap);
+    if (samples == 0) {
+        // A sample takes no less than a mutation, and a ray.
+        const auto bound = [&](double budget) {
+            if (budget > 0) samples = std::min(samples, SeedingPlan::kLargestShare * budget);
+        };
+        samples = SeedingPlan::kMost;
+        bound(context.expectedUnits);
+        bound(context.expectedRays);
+        bound(context.expectedSeconds * kMostPerSecond * context.workers);
+        samples = std::max(samples, SeedingPlan::kFewest) + 2 * kPilot;
+    }
+    const double chains = parameters.chains;
+    const double turns = context.expectedUnits > 0 ? context.expectedUnits / (chains * kChunk) + 1 : ChainTrace::kMost;
+    const double trace = std::min(turns, double(ChainTrace::kMost)) * sizeof(ChainTrace::Draw);
+    const MemoryNeed held{fmt::format("{} chains", parameters.chains), chains * double(sizeof(ChainSlot) + ChainTrace::kMost * sizeof(ChainTrace::Draw)), "fewer chains"};
+    const MemoryNeed reported{"what is reported of them", chains * (2 * sizeof(ChainTrace) + trace), "fewer chains"};
+    const MemoryNeed bootstrap{fmt::format("{:.3g} bootstrap samples", samples), samples * sizeof(double) + chains * sizeof(Start), "a smaller bootstrap"};
+    const double film = Film::bytes(context.pixels(), false, true), state = chains * (sizeof(ChainSlot) + trace);
+    const auto films = [&](int n) { return MemoryNeed{fmt::format("the films of {} threads", n), n * film, "a smaller film or fewer threads"}; };
+    // Seeding, work, and between rounds of work, when one film has everything.
+    return {{{bootstrap, held}, bootstrap.bytes}, {{films(context.workers), held}}, {{films(1), held, reported}, film + state}};
+}
+
 bool ChainRun::prepare(const StopFunction& stop) {
     if (bootstrapGoal_ == 0) {
         if (!growPilot(stop)) return false;

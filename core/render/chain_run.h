@@ -41,10 +41,12 @@ public:
              const TargetMaker& makeTarget);
     ~ChainRun() override;
 
+    /// For Sampler::memory.
+    static std::vector<MemoryPhase> memory(const RunContext& context, const ChainParameters& parameters);
+
     bool prepare(const StopFunction& stop) override;
     void settle() override;
-    /// Steps a chain takes before the next one's turn: long enough to keep its state in the cache.
-    uint64_t chunk() const override { return 64; }
+    uint64_t chunk() const override { return kChunk; }
     void work(int worker, uint64_t begin, uint64_t end) override;
     Image develop(uint64_t units) override;
     uint64_t rays() const override;
@@ -54,6 +56,8 @@ public:
     Json replay(const NonFiniteEvent& event) override;
 
 private:
+    /// Steps a chain takes before the next one's turn: long enough to keep its state in the cache.
+    static constexpr uint64_t kChunk = 64;
     struct Worker;
     struct ChainSlot;
 

@@ -34,7 +34,9 @@ public:
         if (b.spp) units = std::min(units, *b.spp * pixels_);
         if (b.mutations) units = std::min(units, *b.mutations);
         unitLimit_ = std::isfinite(units) ? uint64_t(std::llround(std::max(1.0, units))) : kUnlimited;
-        run_ = sampler.start({scene, options.key, options.threads, std::isfinite(units) ? units : 0, b.seconds.value_or(0), b.rays.value_or(0)});
+        const RunContext context{scene, options.key, options.threads, std::isfinite(units) ? units : 0, b.seconds.value_or(0), b.rays.value_or(0)};
+        requireMemoryOf(sampler.memory(context), scene);
+        run_ = sampler.start(context);
     }
 
     RenderResult execute() {
@@ -70,6 +72,19 @@ private:
     /// Of the render itself: without snapshots and checkpoints, with earlier sessions.
     double workSeconds() const { return std::chrono::duration<double>(Clock::now() - start_).count() - notWork_; }
     double timeLimit() const { return options_.budget.seconds.value_or(std::numeric_limits<double>::infinity()); }
+
+    /// Adds to each of the run's phases what is the driver's.
+    void requireMemoryOf(std::vector<MemoryPhase> phases, const Scene& scene) {
+        if (phases.empty()) phases.emplace_back();
+        const int images = options_.snapshots + 1;
+        for (MemoryPhase& phase : phases) {
+            phase.parts.push_back({fmt::format("{} images", images), images * pixels_ * double(sizeof(Rgb)), "a smaller film or fewer snapshots"});
+            if (options_.checkpoint) phase.parts.push_back({"the state for a checkpoint", phase.state, "--checkpoint 0"});
+            stateBytes_ = std::max(stateBytes_, size_t(phase.state));
+        }
+        const auto largest = std::ranges::max_element(phases, {}, [](const MemoryPhase& phase) { return totalBytes(phase.parts); });
+        requireMemory("the render", scene.memory(), largest->parts);
+    }
 
     void prepare() {
         if (prepared_) return;
@@ -139,6 +154,7 @@ private:
         std::string trouble;
         try {
             ByteWriter state;
+            state.text.reserve(stateBytes_);  // at once: growing, it would be there twice for a while
             archive(state);
             run_->save(state);
             writeCheckpoint(*options_.checkpoint, state.text);
@@ -189,6 +205,7 @@ private:
     double notWork_ = 0;  ///< seconds since start_ that are not the render's; negative where earlier sessions worked longer
     double seedingSeconds_ = 0;
     uint64_t seedingRays_ = 0;
+    size_t stateBytes_ = 0;  ///< of a checkpoint, at most, as far as the sampler says
     double plannedCheckpoint_ = 0, lastReport_ = 0;
     std::atomic<bool> stopped_ = false;
     const std::atomic<uint64_t> seeded_ = 0;  ///< units done while seeding: none

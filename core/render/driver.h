@@ -44,7 +44,7 @@ struct RenderResult {
     std::string lost;              ///< why the state could not be kept when it was interrupted; empty: it was
 };
 
-/// Errors: InvalidConfig if the budget does not fit the sampler, no path carries light, or the checkpoint is of another run.
+/// Errors: InvalidConfig if the budget does not fit the sampler, the memory it needs is not allowed, no path carries light, or the checkpoint is of another run.
 RenderResult render(const Scene& scene, const Sampler& sampler, const RenderOptions& options);
 
 }  // namespace ulam

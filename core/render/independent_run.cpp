@@ -116,6 +116,23 @@ IndependentRun::IndependentRun(const RunContext& context, const SourceMaker& mak
 
 IndependentRun::~IndependentRun() = default;
 
+std::vector<MemoryPhase> IndependentRun::memory(const RunContext& context, const Keeps& keeps) {
+    const double pixels = context.pixels(), depth = keeps.techniqueDepth;
+    const double film = Film::bytes(pixels, keeps.samples, keeps.splats) + Film::countBytes(pixels);
+    // k edges have k + 1 techniques that end on the sensor or see it, each with two images.
+    const double images = depth * (depth + 3), techniques = images * Film::bytes(pixels, true, false);
+    const auto phase = [&](int films) {
+        MemoryNeeds parts = {{fmt::format("the films of {} threads", films), films * film, "a smaller film or fewer threads"},
+                             {"the order of pixels", pixels * sizeof(int), "a smaller film"}};
+        if (images > 0) parts.push_back({fmt::format("{} films of techniques for each", images), films * techniques, "no technique_images or a smaller max_depth"});
+        return parts;
+    };
+    // Between rounds of work one film has everything.
+    MemoryPhase paused{phase(1), film + techniques};
+    paused.parts.push_back({fmt::format("{} images of techniques", images), images * pixels * sizeof(Rgb), "no technique_images or a smaller max_depth"});
+    return {{phase(context.workers)}, paused};
+}
+
 /// The numbers of a sample, whose pixel the worker then has.
 Numbers IndependentRun::numbersOf(uint64_t sample, Worker& w, Random& random) const {
     w.u.clear();

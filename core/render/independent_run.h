@@ -58,6 +58,13 @@ public:
     IndependentRun(const RunContext& context, const SourceMaker& makeSource, bool techniqueImages = false);
     ~IndependentRun() override;
 
+    struct Keeps {
+        bool samples = true, splats = false;  ///< contributions that belong to pixels, and others
+        int techniqueDepth = 0;               ///< longest path of the techniques that have images; 0: none have
+    };
+    /// For Sampler::memory.
+    static std::vector<MemoryPhase> memory(const RunContext& context, const Keeps& keeps);
+
     uint64_t chunk() const override { return 256; }
     void work(int worker, uint64_t begin, uint64_t end) override;
     Image develop(uint64_t units) override;

@@ -3,6 +3,7 @@
 // its work; the driver (driver.h) has the threads, budgets, snapshots and progress.
 
 #include "core/base/archive.h"
+#include "core/base/memory.h"
 #include "core/config/registry.h"
 #include "core/path/walk.h"
 #include "core/render/parallel.h"
@@ -22,6 +23,14 @@ struct RunContext {
     double expectedUnits;    ///< samples or mutations the budget may allow, as far as known (0: unknown)
     double expectedSeconds;  ///< time budget (0: none)
     double expectedRays;     ///< budget of rays (0: none)
+
+    double pixels() const { return double(scene.sensor->width()) * scene.sensor->height(); }
+};
+
+/// What a run holds at most in a part of its time, beside the scene and finished images.
+struct MemoryPhase {
+    MemoryNeeds parts = {};
+    double state = 0;  ///< bytes that SamplerRun::save writes then
 };
 
 /// One run of a sampler. Work comes in units (samples, or mutations for chains), numbered from 0. The image depends on
@@ -69,6 +78,8 @@ public:
 
     /// Are its units mutations of Markov chains?
     virtual bool isChainSampler() const { return false; }
+    /// The phases of a run, as far as their memory differs; told without starting it. None: it does not say.
+    virtual std::vector<MemoryPhase> memory(const RunContext& /*context*/) const { return {}; }
     virtual std::unique_ptr<SamplerRun> start(const RunContext& context) const = 0;
 };
 

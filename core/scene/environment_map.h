@@ -31,6 +31,8 @@ public:
     /// ∫ luminance dω; 0: no light.
     double totalLuminance() const { return rows_.total() + sunLuminance_; }
     const std::optional<SunDisc>& sun() const { return sun_; }
+    /// That the picture and its distributions take.
+    size_t bytes() const { return image_.pixels.size() * (sizeof(Rgb) + sizeof(double)); }
 
     /// Chooses the sun or the picture by ∫ luminance dω. Of the picture it chooses a cell between four texels likewise,
     /// then a direction in it, uniform per solid angle.

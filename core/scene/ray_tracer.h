@@ -5,6 +5,7 @@
 
 #include <memory>
 #include <span>
+#include <string>
 
 namespace ulam {
 
@@ -13,6 +14,16 @@ struct Hit {
     float distance;
     Vec2f uv;  ///< barycentric on triangles; a place on the unit disc (Disk)
 };
+
+/// What the ray tracer's tree over some shapes takes.
+struct TreeMemory {
+    double building, built;  ///< bytes: at most while it is made, and afterwards
+};
+TreeMemory treeMemory(std::span<const Shape> shapes);
+
+/// The vector instructions that rays are traced with, the widest that the ray tracer and this processor know: "sse", "avx",
+/// "avx2" or "avx512". They decide how distances are rounded.
+std::string rayTracerInstructions();
 
 class RayTracer {
 public:

@@ -1,5 +1,7 @@
 #include "core/scene/scene.h"
 
+#include <set>
+
 #include "core/base/error.h"
 
 namespace ulam {
@@ -10,6 +12,10 @@ void Scene::finalize() {
     if (!box.isEmpty()) bounds_ = {box.center(), std::max(1e-6f, length(box.size()) / 2) * 1.0001f};
 
     // First, since building takes more memory for a while than what follows.
+    MemoryNeeds held = memory(Tree::Building);
+    const MemoryNeed tree = held.back();
+    held.pop_back();
+    requireMemory("the scene", held, {tree});
     rays_ = RayTracer(shapes);
     for (Shape& shape : shapes) shape.prepare();
 
@@ -24,6 +30,31 @@ void Scene::finalize() {
     for (double p : powers) total += p;
     if (!(total > 0)) fail(ExitCode::InvalidConfig, "the scene has no light: add an emitter with positive radiance or intensity");
     emitterChoice_ = DiscreteDistribution(powers);
+}
+
+MemoryNeeds Scene::memory(Tree tree) const {
+    double triangles = 0, geometry = double(shapes.capacity() * sizeof(Shape) + materials.size() * sizeof(Material));
+    std::set<const Mesh*> counted;  // instances share meshes
+    for (const Shape& shape : shapes) {
+        if (shape.id.size() > 15) geometry += double(shape.id.capacity());  // not in the string itself
+        if (shape.triangles.size() > 0) geometry += double(shape.triangles.size() * sizeof(double));
+        const Mesh* mesh = shape.triangleMesh();
+        if (!mesh || !counted.insert(mesh).second) continue;
+        triangles += double(mesh->triangles.size());
+        geometry += double((mesh->positions.size() + mesh->normals.size() + mesh->faceNormals.size()) * sizeof(Vec3f) +
+                           mesh->texcoords.size() * sizeof(Vec2f) + mesh->triangles.size() * sizeof(mesh->triangles[0]));
+    }
+    double pictures = 0;
+    for (const Texture& texture : textures)
+        if (const auto* bitmap = std::get_if<BitmapTexture>(&texture)) pictures += double(bitmap->bytes());
+    for (const Emitter& emitter : emitters)
+        if (const auto* sky = std::get_if<EnvmapEmitter>(&emitter)) pictures += double(sky->map->bytes());
+    const TreeMemory rays = treeMemory(shapes);
+    const bool building = tree == Tree::Building;
+    return {{fmt::format("{} triangles and {} shapes", triangles, shapes.size()), geometry, "coarser meshes or fewer instances"},
+            {"pictures of textures and the environment", pictures, "smaller pictures"},
+            {building ? "the tree for tracing rays while it is built" : "the tree for tracing rays", building ? rays.building : rays.built,
+             "coarser meshes or fewer instances"}};
 }
 
 Spectrum Scene::meanRadiance(const AreaEmitter& area) const {

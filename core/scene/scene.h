@@ -1,6 +1,7 @@
 #pragma once
 // A scene ready to be rendered: shapes, materials, emitters, sensor and ray tracing, in flat arrays that vertices index.
 
+#include "core/base/memory.h"
 #include "core/image/filter.h"
 #include "core/scene/emitter.h"
 #include "core/scene/features.h"
@@ -28,8 +29,13 @@ public:
     std::vector<std::string> substitutions;  ///< what is not as its file says, in words: images of it are biased
     std::string hash;                   ///< SHA-256 of everything that determines images of this scene
 
-    /// Call once after the arrays are filled: areas, bounds, light selection, acceleration structure.
+    /// Call once after the arrays are filled: areas, bounds, light selection, acceleration structure. Fails with
+    /// InvalidConfig where the memory for it is not allowed.
     void finalize();
+
+    /// What it takes: its meshes and pictures, and the ray tracer's tree, once built or at most while it is built.
+    enum class Tree { Built, Building };
+    MemoryNeeds memory(Tree tree = Tree::Built) const;
 
     EmissionContext emission(uint32_t emitter) const { return {shapes, textures, bounds_, emitter}; }
     const BoundingSphere& bounds() const { return bounds_; }

@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "core/base/error.h"
+#include "core/base/memory.h"
 #include "core/config/suggest.h"
 #include "core/render/sampler.h"
 #include "core/scene/loading/scene_file.h"
@@ -107,6 +108,13 @@ std::shared_ptr<int> addThreadsOption(CLI::App& command) {
         ->check(CLI::Range(1, 1024))
         ->capture_default_str();
     return threads;
+}
+
+void addMemoryOption(CLI::App& command) {
+    command
+        .add_option_function<std::uint64_t>("--max-memory", limitMemory, "memory that may be taken, as 500M or 4G: what needs more is refused before")
+        ->transform(CLI::AsSizeValue(false))
+        ->type_name("SIZE");
 }
 
 std::shared_ptr<std::uint64_t> addSeedOption(CLI::App& command) {

@@ -35,6 +35,9 @@ void addPluginOption(CLI::App& command);
 /// `--threads N`, by default the number of cores.
 std::shared_ptr<int> addThreadsOption(CLI::App& command);
 
+/// `--max-memory SIZE`: see limitMemory, which is called while the command line is parsed.
+void addMemoryOption(CLI::App& command);
+
 /// `--seed N`, by default 1.
 std::shared_ptr<std::uint64_t> addSeedOption(CLI::App& command);
 

@@ -63,9 +63,12 @@ CheckpointPlan checkpointPlan(const RenderArguments& a, const RenderJob& job) {
 /// The image of a repetition against the one it repeats.
 void checkRepetition(const RenderArguments& a, const Repetition& of, const Image& image) {
     if (imageHash(image) == of.imageHash) return;
-    fail(ExitCode::VerificationRejected, "the image differs from that of {}{}", a.replay,
-         of.version == programVersion() ? std::string(" (was it made with another processor?)")
-                                        : fmt::format(", which version {} made; this is {}", of.version, programVersion()));
+    std::string cause = " (was it made with another processor?)";
+    if (of.version != programVersion())
+        cause = fmt::format(", which version {} made; this is {}", of.version, programVersion());
+    else if (!of.simd.is_null() && of.simd != simd())
+        cause = fmt::format(", which was made with other vector instructions: {}, here {}", of.simd.dump(), simd().dump());
+    fail(ExitCode::VerificationRejected, "the image differs from that of {}{}", a.replay, cause);
 }
 
 void renderImage(const RenderArguments& a) {
@@ -146,6 +149,7 @@ void addRenderCommand(CLI::App& app) {
     budget->add_option("--rays", a->rays, "rays traced")->check(positiveNumber());
     a->seed = addSeedOption(command);
     a->threads = addThreadsOption(command);
+    addMemoryOption(command);
     command.add_option("-o,--output", a->output, "image to write")->type_name("OUT.exr")->required();
     command.add_option("--stats", a->stats, "numbers to write, as in a cell's result.json")->type_name("OUT.json");
     command.add_option("--replay", a->replay, "repeat the run of a result.json by the work it did, and check that the image is the same")

@@ -108,7 +108,9 @@ Repetition repetition(const fs::path& file) {
     Repetition r{.job = jobOf(result.at("repeat")),
                  .sceneHash = result.at("scene_hash").string(),
                  .imageHash = result.at("image_sha256").string(),
-                 .version = result.at("program_version").string()};
+                 .version = result.at("program_version").string(),
+                 .simd = nullptr};
+    if (const auto simd = result.find("simd")) r.simd = simd->json();
     RunIdentity& run = r.job.run;
     run.scene = result.at("scene").string();
     run.sampler = result.at("sampler").string();

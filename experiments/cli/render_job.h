@@ -39,6 +39,7 @@ RenderJob jobOf(const JsonNode& repeat);
 struct Repetition {
     RenderJob job;
     std::string sceneHash, imageHash, version;  ///< of the run
+    Json simd;                                  ///< its vector instructions; null: they are not known
 };
 Repetition repetition(const std::filesystem::path& result);
 

@@ -156,6 +156,7 @@ void addRunCommand(CLI::App& app) {
         ->take_all()
         ->allow_extra_args(false);
     a->threads = addThreadsOption(command);
+    addMemoryOption(command);
     command.add_flag("--keep-going", a->keepGoing,
                      "a replicate or a reference that fails is reported, the others go on");
     command.add_flag("--quiet", a->quiet, "no progress");

@@ -48,6 +48,7 @@ void printScene(const SceneDescription& description, const SceneArguments& a) {
         instances += std::holds_alternative<MeshInstance>(shape.geometry);
     }
     const BoundingSphere& bounds = scene.bounds();
+    const MemoryNeeds memory = scene.memory(Scene::Tree::Building);
     if (a.json) {
         fmt::print("{}\n",
                    dump({{"schema_version", 1},
@@ -59,6 +60,7 @@ void printScene(const SceneDescription& description, const SceneArguments& a) {
                          {"triangles", triangles},
                          {"materials", scene.materials.size()},
                          {"emitters", scene.emitters.size()},
+                         {"estimated_memory_bytes", std::uint64_t(totalBytes(memory))},
                          {"bounds",
                           {{"center", {bounds.center.x, bounds.center.y, bounds.center.z}}, {"radius", bounds.radius}}},
                          {"features", scene.features.names},
@@ -75,6 +77,9 @@ void printScene(const SceneDescription& description, const SceneArguments& a) {
     if (!scene.features.empty())
         fmt::print("features   {} ({} x {}), {} … {}\n", scene.features.names.size(), scene.features.rows,
                    scene.features.columns, scene.features.names.front(), scene.features.names.back());
+    fmt::print("memory     about {}\n", sizeText(totalBytes(memory)));
+    for (const MemoryNeed& need : memory)
+        if (need.bytes > 0) fmt::print("           {} for {}\n", sizeText(need.bytes), need.what);
     fmt::print("hash       {}\n", scene.hash);
     for (const std::string& warning : scene.warnings) fmt::print("warning    {}\n", warning);
 }

@@ -12,6 +12,7 @@
 #include "build_info.h"
 #include "core/base/file.h"
 #include "core/base/sha256.h"
+#include "core/scene/ray_tracer.h"
 
 namespace ulam {
 namespace {
@@ -52,6 +53,20 @@ std::vector<std::string> processArguments() {
     return arguments;
 }
 
+const Json& simd() {
+#if defined(__AVX512F__)
+    constexpr const char* compiled = "avx512";
+#elif defined(__AVX2__)
+    constexpr const char* compiled = "avx2";
+#elif defined(__AVX__)
+    constexpr const char* compiled = "avx";
+#else
+    constexpr const char* compiled = "sse";
+#endif
+    static const Json used = {{"compiled", compiled}, {"ray_tracer", rayTracerInstructions()}};
+    return used;
+}
+
 std::string utcNow() {
     const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
     std::tm parts{};
@@ -75,6 +90,7 @@ Json provenance(const std::vector<std::string>& arguments) {
           {"build", build::kType},
           {"compiler", build::kCompiler},
           {"flags", build::kFlags},
+          {"simd", simd()},
           {"cmake", build::kCmake},
           {"executable_sha256", programHash()}}},
         {"libraries",

@@ -19,6 +19,10 @@ Json provenance(const std::vector<std::string>& arguments);
 /// The arguments of this process.
 std::vector<std::string> processArguments();
 
+/// The vector instructions that the program is compiled for and that rays are traced with: {"compiled": "avx2",
+/// "ray_tracer": "avx512"}. With others images are rounded otherwise, and chains take other ways.
+const Json& simd();
+
 /// "2025-01-31T12:00:00Z"
 std::string utcNow();
 

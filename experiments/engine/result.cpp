@@ -1,12 +1,11 @@
 #include "experiments/engine/result.h"
 
-#include <sys/resource.h>
-
 #include <algorithm>
 
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/fixed_sum.h"
+#include "core/base/memory.h"
 #include "core/base/sha256.h"
 #include "core/mcmc/mutation_mix.h"
 #include "experiments/engine/mixing.h"
@@ -17,12 +16,6 @@ namespace ulam {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::uint64_t peakResidentBytes() {
-    rusage usage{};
-    ::getrusage(RUSAGE_SELF, &usage);
-    return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
-}
 
 Json mutationJson(const MutationStatistics& m) {
     Json rejected = Json::object();
@@ -123,10 +116,12 @@ Json resultJson(const RunIdentity& run, const RenderResult& result, const Featur
         {"snapshots", snapshots},
         {"width", result.image.width},
         {"height", result.image.height},
+        {"estimated_memory_bytes", expectedPeakBytes()},
         {"peak_rss_bytes", peakResidentBytes()},
         {"image_sha256", imageHash(result.image)},
         {"interrupted", result.interrupted},
         {"program_version", programVersion()},
+        {"simd", simd()},
     };
 }
 

@@ -60,6 +60,7 @@ public:
         return {float(alongX * m[0] + alongY * m[3]), float(alongX * m[1] + alongY * m[4])};
     }
 
+    size_t bytes() const { return image_->bytes(); }
     Rgb smallest() const { return extreme([](float a, float b) { return std::min(a, b); }); }
     Rgb largest() const { return extreme([](float a, float b) { return std::max(a, b); }); }
 

@@ -74,6 +74,8 @@ TEST_CASE("a run leaves every file of every replicate", "[run]") {
                                     "non_finite",
                                     "bias_ledger",
                                     "peak_rss_bytes",
+                                    "estimated_memory_bytes",
+                                    "simd",
                                     "image_sha256",
                                     "units",
                                     "snapshots",
