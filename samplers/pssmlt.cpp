@@ -34,7 +34,9 @@ public:
 
     bool isChainSampler() const override { return true; }
 
-    std::vector<MemoryPhase> memory(const RunContext& context) const override { return ChainRun::memory(context, parameters_.chains); }
+    std::vector<MemoryPhase> memory(const RunContext& context) const override {
+        return ChainRun::memory(context, parameters_.chains, parameters_.limits);
+    }
     std::unique_ptr<SamplerRun> start(const RunContext& context) const override {
         BidirectionalOptions options;
         options.limits = parameters_.limits;

@@ -167,7 +167,7 @@ ChainRun::ChainRun(const RunContext& context, const ChainParameters& parameters,
 
 ChainRun::~ChainRun() = default;
 
-std::vector<MemoryPhase> ChainRun::memory(const RunContext& context, const ChainParameters& parameters) {
+std::vector<MemoryPhase> ChainRun::memory(const RunContext& context, const ChainParameters& parameters, const PathLimits& limits) {
     constexpr double kMostPerSecond = 1e6;  // bootstrap samples of a thread
     double samples = double(parameters.bootstrap);
     if (samples == 0) {
@@ -187,7 +187,9 @@ std::vector<MemoryPhase> ChainRun::memory(const RunContext& context, const Chain
     const MemoryNeed held{fmt::format("{} chains", parameters.chains), chains * double(sizeof(ChainSlot) + ChainTrace::kMost * sizeof(ChainTrace::Draw)), "fewer chains"};
     const MemoryNeed reported{"what is reported of them", chains * (2 * sizeof(ChainTrace) + trace), "fewer chains"};
     const MemoryNeed bootstrap{fmt::format("{:.3g} bootstrap samples", samples), samples * sizeof(double) + chains * sizeof(Start), "a smaller bootstrap"};
-    const double film = Film::bytes(context.pixels(), false, true), state = chains * (sizeof(ChainSlot) + trace);
+    const double film = Film::bytes(context.pixels(), false, true);
+    // Of a chain's path only what is used is written.
+    const double state = chains * (sizeof(Chain) * (limits.maxDepth + 2.0) / (kMaxDepth + 2.0) + trace);
     const auto films = [&](int n) { return MemoryNeed{fmt::format("the films of {} threads", n), n * film, "a smaller film or fewer threads"}; };
     // Seeding, work, and between rounds of work, when one film has everything.
     return {{{bootstrap, held}, bootstrap.bytes}, {{films(context.workers), held}}, {{films(1), held, reported}, film + state}};

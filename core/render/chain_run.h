@@ -42,7 +42,7 @@ public:
     ~ChainRun() override;
 
     /// For Sampler::memory.
-    static std::vector<MemoryPhase> memory(const RunContext& context, const ChainParameters& parameters);
+    static std::vector<MemoryPhase> memory(const RunContext& context, const ChainParameters& parameters, const PathLimits& limits);
 
     bool prepare(const StopFunction& stop) override;
     void settle() override;

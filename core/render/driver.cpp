@@ -40,7 +40,8 @@ public:
     }
 
     RenderResult execute() {
-        if (options_.checkpoint && options_.checkpoint->resume && std::filesystem::exists(options_.checkpoint->file)) restore();
+        const auto& plan = options_.checkpoint;
+        if (plan && plan->resume != Resume::No && std::filesystem::exists(plan->file)) restore(*plan);
         plannedCheckpoint_ = workSeconds() + interval();
         prepare();
         while (!stopped_) {
@@ -76,10 +77,12 @@ private:
     /// Adds to each of the run's phases what is the driver's.
     void requireMemoryOf(std::vector<MemoryPhase> phases, const Scene& scene) {
         if (phases.empty()) phases.emplace_back();
-        const int images = options_.snapshots + 1;
+        constexpr double kCounters = 1 << 20;  // in a state, beside what is large
+        const double image = pixels_ * sizeof(Rgb), snapshots = options_.snapshots * image;
         for (MemoryPhase& phase : phases) {
-            phase.parts.push_back({fmt::format("{} images", images), images * pixels_ * double(sizeof(Rgb)), "a smaller film or fewer snapshots"});
-            if (options_.checkpoint) phase.parts.push_back({"the state for a checkpoint", phase.state, "--checkpoint 0"});
+            phase.parts.push_back({fmt::format("{} images", options_.snapshots + 1), image + snapshots, "a smaller film or fewer snapshots"});
+            phase.state += snapshots + kCounters;
+            if (options_.checkpoint) phase.parts.push_back({"a checkpoint while it is written", phase.state, "--checkpoint 0"});
             stateBytes_ = std::max(stateBytes_, size_t(phase.state));
         }
         const auto largest = std::ranges::max_element(phases, {}, [](const MemoryPhase& phase) { return totalBytes(phase.parts); });
@@ -167,8 +170,14 @@ private:
         return trouble;
     }
 
-    void restore() {
-        const std::string state = readCheckpoint(*options_.checkpoint);
+    void restore(const CheckpointPlan& plan) {
+        std::string state;
+        try {
+            state = readCheckpoint(plan);
+        } catch (const Error&) {
+            if (plan.resume == Resume::IfUsable) return;
+            throw;
+        }
         ByteReader reader(state);
         archive(reader);
         run_->restore(reader);

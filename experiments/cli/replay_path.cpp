@@ -1,9 +1,10 @@
-// ulam replay-path: one sample or one step of a run, made again and told in full.
+// ulam replay-path: one sample or step of a run, or one trial of the audit, made again and told in full.
 
 #include "core/base/error.h"
 #include "experiments/cli/commands.h"
 #include "experiments/cli/render_job.h"
 #include "experiments/engine/path_token.h"
+#include "experiments/verify/trial_token.h"
 
 namespace ulam {
 namespace {
@@ -29,7 +30,13 @@ void print(const Json& value, int indent) {
     }
 }
 
+void tell(const Json& told, bool json) {
+    if (json) fmt::print("{}\n", dump(told));
+    else print(told, 0);
+}
+
 void replayPath(const std::string& word, bool json) {
+    if (word.starts_with(verify::kTrialPrefix)) return tell(verify::replayTrial(word), json);
     const PathToken token = readPathToken(word);
     const RenderJob job = jobOf(JsonNode(token.repeat));
     const Scene scene = buildScene(job, {});
@@ -38,8 +45,7 @@ void replayPath(const std::string& word, bool json) {
     const auto run = sampler->start({.scene = scene, .key = token.key, .workers = 1, .expectedUnits = 0, .expectedSeconds = 0, .expectedRays = 0});
     Json told = {{"cause", token.event.cause}};
     told.update(run->replay(token.event));
-    if (json) fmt::print("{}\n", dump(told));
-    else print(told, 0);
+    tell(told, json);
 }
 
 }  // namespace
@@ -48,7 +54,7 @@ void addReplayPathCommand(CLI::App& app) {
     auto token = std::make_shared<std::string>();
     auto json = std::make_shared<bool>(false);
     CLI::App& command = *app.add_subcommand(
-        "replay-path", "make one sample or step of a run again, and print its paths with densities and contribution");
+        "replay-path", "make one sample or step of a run, or one trial of the audit, again, and print its paths with densities and contribution");
     command.add_option("token", *token, "as results and messages have it")->type_name("TOKEN")->required();
     command.add_flag("--json", *json, "as JSON");
     addPluginOption(command);

@@ -129,7 +129,9 @@ Finding images(const MutationCase& c, References& references, bool mixed) {
             return renderTiled(place.scene->scene, run.sampler, run.budget, runs, c.settings.seed,
                                cellOf(c.name + run.text + part), c.settings.threads);
         };
-        const TiledEstimate runs = preciseRuns(work, render, kPilotShare);
+        // Bounded, since a mutation that is wrong may leave an interval as wide as it likes.
+        constexpr double kMost = 3;
+        const TiledEstimate runs = preciseRuns(work, render, kPilotShare, kMost);
         comparisons.push_back(compare(ImageRun(c, place, mixed).text, runs, references(*place.scene)));
     }
     Finding finding = judgeImages(comparisons, work);

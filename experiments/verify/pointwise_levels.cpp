@@ -7,6 +7,7 @@
 #include "core/mcmc/audit/structure.h"
 #include "experiments/statistics/holm.h"
 #include "experiments/verify/mutation_levels.h"
+#include "experiments/verify/trial_token.h"
 
 namespace ulam::verify {
 namespace {
@@ -23,13 +24,13 @@ void notAudited(Finding& finding, const char* why) {
     finding.summary = why;
 }
 
-void take(Finding& finding, const std::string& place, const Failures& failures) {
+void take(Finding& finding, const MutationCase& c, const Place& place, const Failures& failures) {
     if (failures.count() == 0) return;
     finding.outcome = Outcome::Rejected;
     for (const Failure& f : failures.first())
-        finding.details.push_back(fmt::format("{}, trial {}: {}", place, f.trial, f.message));
+        finding.details.push_back(fmt::format("{}: {}; ulam replay-path {}", place.text, f.message, trialToken(c, place, finding.check, f.trial)));
     if (failures.count() > failures.first().size())
-        finding.details.push_back(fmt::format("{}: {} failures in all", place, failures.count()));
+        finding.details.push_back(fmt::format("{}: {} failures in all", place.text, failures.count()));
 }
 
 /// For the page: a test with all its histograms.
@@ -81,7 +82,7 @@ Finding auditStructure(const MutationCase& c) {
             c.settings.threads, c.work().structure, kChunk, [&](uint64_t begin, uint64_t end) {
                 return auditStructure(*place.scene, subject, place.states, c.key, begin, end);
             });
-        take(finding, place.text, tally.failures);
+        take(finding, c, place, tally.failures);
         if (double(tally.notFinite) > kNotFiniteShare * double(tally.trials)) {
             finding.outcome = Outcome::Rejected;
             finding.details.push_back(fmt::format("{}: {} of {} acceptance ratios are not numbers", place.text,
@@ -108,7 +109,7 @@ Finding auditBalance(const MutationCase& c) {
             c.settings.threads, c.work().balance, kChunk, [&](uint64_t begin, uint64_t end) {
                 return auditBalance(*place.scene, subject, place.states, c.key, begin, end);
             });
-        take(finding, place.text, tally.failures);
+        take(finding, c, place, tally.failures);
         finding.numbers[place.text] = {{"steps", tally.steps},
                                        {"pairs", tally.pairs},
                                        {"worst_residual", numberOrText(tally.worst)},
@@ -138,7 +139,7 @@ Finding auditJacobian(const MutationCase& c) {
                 return auditJacobian(*place.scene, subject, place.states, c.key, begin, end);
             });
         const JacobianVerdict verdict = judge(tally);
-        take(finding, place.text, verdict.failures);
+        take(finding, c, place, verdict.failures);
         finding.numbers[place.text] = {{"proposals", tally.proposals},
                                        {"compared", verdict.comparisons},
                                        {"equalities", verdict.equalities},
@@ -169,6 +170,8 @@ Finding auditDensities(const MutationCase& c) {
     std::vector<double> p;
     size_t classes = 0;
     std::string worst;
+    const Place* worstPlace = nullptr;
+    uint64_t worstState = 0;
     double smallest = 1;
     Json shown = Json::array();
     for (const Place& place : c.places) {
@@ -180,7 +183,7 @@ Finding auditDensities(const MutationCase& c) {
                 const uint64_t state = begin * have / count + have / (2 * count);
                 return auditDensity(*place.scene, subject, place.states.x[state], c.key, state, proposals);
             });
-        take(finding, place.text, tally.failures);
+        take(finding, c, place, tally.failures);
         const DensityTest* odd = nullptr;
         double oddest = 2, deviation = 0;
         for (const DensityTest& test : tally.tests)
@@ -191,6 +194,7 @@ Finding auditDensities(const MutationCase& c) {
                 if (m.p < oddest) oddest = m.p, odd = &test;
                 if (m.p >= smallest) continue;
                 smallest = m.p;
+                worstPlace = &place, worstState = test.state;
                 worst = fmt::format("{}, state {}: {} of {}, chi-square {:.4g} of {} degrees, p = {:.3g}", place.text,
                                     test.state, m.name, test.what, m.statistic, m.degrees, m.p);
             }
@@ -216,7 +220,7 @@ Finding auditDensities(const MutationCase& c) {
                                   classes, all.states - all.unjudged, all.states, adjusted);
     if (adjusted < c.ownLevel(kSuiteLevel)) {
         finding.outcome = Outcome::Rejected;
-        finding.details.push_back(worst);
+        finding.details.push_back(fmt::format("{}; ulam replay-path {}", worst, trialToken(c, *worstPlace, finding.check, worstState)));
     }
     if (finding.outcome == Outcome::Rejected) return finding;
     if (!all.hasDensity)

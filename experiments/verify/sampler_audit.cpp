@@ -28,7 +28,7 @@ std::string compareSampler(Json config, const audit::AuditScene& scene, const st
                            cellOf(place + part), settings.threads);
     };
     try {
-        const TiledEstimate runs = preciseRuns(work, render, kPilotShare);
+        const TiledEstimate runs = preciseRuns(work, render, kPilotShare, kMostGrowth);
         if (!runs.biasLedger.empty()) return runs.biasLedger.front();
         comparisons.push_back(compare(place, runs, references(scene)));
     } catch (const Error& error) {

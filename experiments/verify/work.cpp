@@ -51,12 +51,12 @@ const TiledEstimate& References::operator()(const audit::AuditScene& scene) {
                            cellOf("reference " + scene.name + part), threads_);
     };
     // At least the whole work: every comparison of tiles depends on it.
-    return made_[scene.name] = preciseRuns(work_, render, 1);
+    return made_[scene.name] = preciseRuns(work_, render, 1, kMostGrowth);
 }
 
-TiledEstimate preciseRuns(const Work& work, const MakeRuns& make, double leastFactor) {
+TiledEstimate preciseRuns(const Work& work, const MakeRuns& make, double leastFactor, double mostFactor) {
     constexpr int kPilotRuns = 12;
-    constexpr double kMostGrowth = 400, kSafety = 1.4;
+    constexpr double kSafety = 1.4;
     double factor = kPilotShare;
     int count = kPilotRuns;
     TiledEstimate runs = make(factor, count, " pilot");
@@ -66,7 +66,7 @@ TiledEstimate preciseRuns(const Work& work, const MakeRuns& make, double leastFa
         // Half of the interval's square is the runs', the other half the reference's.
         const double deviation = halfWidth / statistics::studentQuantile(2.0 * (work.runs - 1), 1 - (1 - kEnergyConfidence) / 2);
         const double allowed = deviation * deviation / 2;
-        factor = std::clamp(factor * count / work.runs * kSafety * runs.energy.varianceOfMean / allowed, leastFactor, kMostGrowth);
+        factor = std::clamp(factor * count / work.runs * kSafety * runs.energy.varianceOfMean / allowed, leastFactor, mostFactor);
         runs = make(factor, work.runs, part), count = work.runs;
         if (runs.energy.varianceOfMean <= allowed) break;
     }

@@ -49,9 +49,9 @@ uint64_t cellOf(std::string_view name);
 using MakeRuns = std::function<TiledEstimate(double factor, int runs, const char* part)>;
 /// Runs that make the energy interval narrow enough: a pilot says how much work that takes, since scenes and samplers
 /// differ widely in variance. Runs that say themselves that they are biased are returned as they are.
-TiledEstimate preciseRuns(const Work& work, const MakeRuns& make, double leastFactor);
-/// How small a factor may get, with which the pilot is made.
-inline constexpr double kPilotShare = 0.05;
+TiledEstimate preciseRuns(const Work& work, const MakeRuns& make, double leastFactor, double mostFactor);
+// How small a factor may get, with which the pilot is made, and how large one of a sampler.
+inline constexpr double kPilotShare = 0.05, kMostGrowth = 400;
 
 /// Images by bidirectional path tracing, made when they are asked for first; precise enough for the energy interval.
 class References {

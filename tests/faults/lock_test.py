@@ -55,9 +55,9 @@ class Locks(unittest.TestCase):
         for n in (1, 2, 3):
             self.assertTrue((self.folder / f"runs/tiny-{n}/summary.json").exists())
 
-    def render(self, seed):
-        return ["render", "scene.json", "--sampler", "path", "--spp", 4, "-o", "out.exr", "--stats", "out.json", "--threads", 1,
-                "--quiet", "--seed", seed]
+    def render(self, seed, *more, spp=4, name="out"):
+        return ["render", "scene.json", "--sampler", "path", "--spp", spp, "-o", f"{name}.exr", "--stats", f"{name}.json",
+                "--threads", 1, "--quiet", "--seed", seed, *more]
 
     def test_a_render_waits_until_another_has_written_its_files(self):
         folder = os.open(self.folder, os.O_RDONLY | os.O_DIRECTORY)
@@ -72,14 +72,29 @@ class Locks(unittest.TestCase):
         self.assertEqual(render.returncode, 0)
         self.assertTrue((self.folder / "out.exr").exists())
 
+    def test_renders_with_one_name_would_share_a_checkpoint(self):
+        first = self.start(*self.render(1, spp=100_000_000))
+        self.wait_for(lambda: (self.folder / "out.exr.lock").exists())
+        second = tiny.call(self.render(2), self.folder)
+        self.assertEqual(second.returncode, 6, second.err)
+        self.assertIn(f"out.exr is in use by process {first.pid} on {socket.gethostname()}", second.err)
+        other = tiny.call(self.render(2, name="other"), self.folder)
+        self.assertEqual(other.returncode, 0, other.err)
+        first.kill()
+        first.communicate()
+        again = tiny.call(self.render(2), self.folder)
+        self.assertEqual(again.returncode, 0, again.err)
+        self.assertEqual([f.name for f in self.folder.glob("*.lock")], [])
+
     def test_of_renders_with_one_name_one_wins_whole(self):
         images = {}
+        alone = ("--checkpoint", 0)  # no state, no lock
         for seed in (1, 2, 3):
-            tiny.call(self.render(seed), self.folder)
+            tiny.call(self.render(seed, *alone), self.folder)
             images[seed] = (self.folder / "out.exr").read_bytes()
         self.assertEqual(len(set(images.values())), 3)
         for _ in range(3):
-            for render in [self.start(*self.render(seed)) for seed in images]:
+            for render in [self.start(*self.render(seed, *alone)) for seed in images]:
                 render.communicate(timeout=60)
                 self.assertEqual(render.returncode, 0)
             winner = json.loads((self.folder / "out.json").read_text())["seed"]

@@ -60,6 +60,21 @@ class PlantedTest(unittest.TestCase):
                 self.assertTrue(found)
 
     @unittest.skipUnless(FULL, "all bugs: ULAM_TEST_LEVEL=full")
+    def test_a_failure_of_the_audit_is_replayed_by_its_token(self):
+        for bug_id, subject, check in ((3, "mutation lens", "balance"), (9, "mutation lens", "structure")):
+            report = audit_bugs.audit(bug_id, subject)[2]
+            found = [f for s in report["subjects"] for f in s["findings"] if f["check"] == check]
+            message, token = found[0]["details"][0].split("; ulam replay-path ")
+            for planted in (bug_id, 0):
+                code, out, _ = audit_bugs.run(planted, "replay-path", token, "--json")
+                self.assertEqual(code, 0)
+                told = json.loads(out)
+                self.assertEqual(told["check"], check)
+                self.assertGreaterEqual(len(told["steps"][0]["current"]["path"]["vertices"]), 3)
+                self.assertEqual(told["failures"] != [], planted != 0)
+                if planted:
+                    self.assertTrue(message.endswith(told["failures"][0]), (message, told["failures"]))
+
     def test_the_audit_finds_nearly_all_bugs_and_nothing_where_there_is_none(self):
         bugs = audit_bugs.bugs()
         for subject in dict.fromkeys(bug["subject"] for bug in bugs):

@@ -9,7 +9,7 @@ double difference(double a, double b) {
 
 class Step : StepObserver {
 public:
-    Step(const AuditScene& scene, const Subject& subject, RandomKey key, BalanceTally& tally)
+    Step(const AuditScene& scene, const Subject& subject, RandomKey key, BalanceTally& tally, StepObserver* watcher)
         : scene_(scene),
           subject_(subject),
           key_(key),
@@ -17,7 +17,8 @@ public:
           kernel_(subject.mix()),
           primary_(subject.mutation().space() == Space::Primary),
           tolerance_(primary_ && subject.target() == Space::Primary ? kPrimaryResidual : kPathResidual),
-          tally_(tally) {}
+          tally_(tally),
+          watcher_(watcher) {}
 
     void run(const Sample& state, uint64_t trial) {
         trial_ = trial;
@@ -34,6 +35,7 @@ public:
 
 private:
     void observe(const Chain& before, const Proposal& p, const StepInfo& info) override {
+        if (watcher_) watcher_->observe(before, p, info);
         if (info.mutation != 0) return;
         ++tally_.steps;
         if (info.reject != Reject::None) return;
@@ -129,6 +131,7 @@ private:
     bool primary_;
     double tolerance_;
     BalanceTally& tally_;
+    StepObserver* watcher_;
     Chain chain_;
     StepContext* context_ = nullptr;
     uint64_t trial_ = 0;
@@ -144,9 +147,9 @@ void BalanceTally::merge(const BalanceTally& later) {
 }
 
 BalanceTally auditBalance(const AuditScene& scene, const Subject& subject, const States& states, RandomKey key,
-                          uint64_t begin, uint64_t end) {
+                          uint64_t begin, uint64_t end, StepObserver* watcher) {
     BalanceTally tally;
-    Step step(scene, subject, key, tally);
+    Step step(scene, subject, key, tally, watcher);
     for (uint64_t t = begin; t < end; ++t) step.run(states.x[t % states.x.size()], t);
     return tally;
 }

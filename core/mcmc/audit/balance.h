@@ -19,7 +19,8 @@ struct BalanceTally {
     void merge(const BalanceTally& later);
 };
 
+/// Trials [begin, end), from states as in the audit of structure, with a watcher as there.
 BalanceTally auditBalance(const AuditScene& scene, const Subject& subject, const States& states, RandomKey key,
-                          uint64_t begin, uint64_t end);
+                          uint64_t begin, uint64_t end, StepObserver* watcher = nullptr);
 
 }  // namespace ulam::audit

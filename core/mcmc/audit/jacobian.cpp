@@ -21,8 +21,8 @@ double median(const std::vector<double>& values) {
 
 class Comparer {
 public:
-    Comparer(const AuditScene& scene, const Subject& subject, RandomKey key, JacobianTally& tally)
-        : scene_(scene), subject_(subject), key_(key), target_(subject.makeTarget(scene)), tally_(tally) {}
+    Comparer(const AuditScene& scene, const Subject& subject, RandomKey key, JacobianTally& tally, StepObserver* watcher)
+        : scene_(scene), subject_(subject), key_(key), target_(subject.makeTarget(scene)), tally_(tally), watcher_(watcher) {}
 
     void run(const Sample& x, uint64_t state, uint64_t trial) {
         state_ = state;
@@ -37,6 +37,7 @@ private:
         Random random = randomOf(key_, Stream::Jacobian, trial);
         StepContext context{random, target_->tracing(), scene_.limits};
         const Proposal p = subject_.mutation().propose(x, context);
+        watch(x, p);
         if (p.reject != Reject::None) return;
         std::vector<Block> numbers;
         Random again = randomOf(key_, Stream::Jacobian, trial);
@@ -56,6 +57,7 @@ private:
         Sample x = state;
         Random random = randomOf(key_, Stream::Jacobian, trial);
         if (!std::isfinite(target_->redrawTechnique(x, random, true))) return;
+        watch(x, {});
         std::vector<Block> numbers;
         for (int s = 0; s < kStreams; ++s)
             for (int i = 0; i < x.u.size(NumberStream(s)); ++i) numbers.push_back(x.u(NumberStream(s), i));
@@ -78,6 +80,14 @@ private:
         compare(map, numbers, Path(), path, factors, stated, trial);
     }
 
+    /// The kernel takes no part: there is no acceptance.
+    void watch(const Sample& x, const Proposal& p) {
+        if (!watcher_) return;
+        Chain chain;
+        chain.x = x;
+        watcher_->observe(chain, p, {.mutation = 0, .acceptance = std::numeric_limits<double>::quiet_NaN(), .reject = p.reject});
+    }
+
     void compare(const NumberMap& map, const std::vector<Block>& numbers, const Path& origin, const Path& path,
                  const PathFactors& factors, double stated, uint64_t trial) {
         ++tally_.proposals;
@@ -96,6 +106,7 @@ private:
     RandomKey key_;
     std::unique_ptr<Target> target_;
     JacobianTally& tally_;
+    StepObserver* watcher_;
     uint64_t state_ = 0;
 };
 
@@ -108,10 +119,10 @@ void JacobianTally::merge(const JacobianTally& later) {
 }
 
 JacobianTally auditJacobian(const AuditScene& scene, const Subject& subject, const States& states, RandomKey key,
-                            uint64_t begin, uint64_t end) {
+                            uint64_t begin, uint64_t end, StepObserver* watcher) {
     JacobianTally tally;
     if (subject.target() == Space::Primary) return tally;
-    Comparer comparer(scene, subject, key, tally);
+    Comparer comparer(scene, subject, key, tally, watcher);
     for (uint64_t t = begin; t < end; ++t) comparer.run(states.x[t % states.x.size()], states.source[t % states.x.size()], t);
     return tally;
 }

@@ -40,7 +40,7 @@ struct JacobianVerdict {
 /// Of a Path mutation: its proposals. Of a Primary mutation on a Path target: the map from numbers to paths, whose
 /// density enters the acceptance. On a Primary target nothing is compared (see auditSteps).
 JacobianTally auditJacobian(const AuditScene& scene, const Subject& subject, const States& states, RandomKey key,
-                            uint64_t begin, uint64_t end);
+                            uint64_t begin, uint64_t end, StepObserver* watcher = nullptr);
 JacobianVerdict judge(const JacobianTally& tally);
 
 }  // namespace ulam::audit

@@ -43,13 +43,14 @@ bool sameFactors(const Scene& scene, const Sample& y) {
 
 class Trial : StepObserver {
 public:
-    Trial(const AuditScene& scene, const Subject& subject, RandomKey key, StructureTally& tally)
+    Trial(const AuditScene& scene, const Subject& subject, RandomKey key, StructureTally& tally, StepObserver* watcher)
         : scene_(scene),
           subject_(subject),
           key_(key),
           target_(subject.makeTarget(scene)),
           kernel_(subject.mix()),
-          tally_(tally) {}
+          tally_(tally),
+          watcher_(watcher) {}
 
     void run(const Sample& state, uint64_t trial) {
         trial_ = trial;
@@ -109,6 +110,7 @@ private:
     }
 
     void observe(const Chain& before, const Proposal& proposal, const StepInfo& info) override {
+        if (watcher_) watcher_->observe(before, proposal, info);
         next_ = bytesOf(info.accepted ? proposal.y : before.x);
         check(info.acceptance >= 0 && info.acceptance <= 1, fmt::format("acceptance {}", info.acceptance));
         tally_.notFinite += info.reject == Reject::NotFinite && !extreme(trial_);
@@ -132,6 +134,7 @@ private:
     std::unique_ptr<Target> target_;
     Kernel kernel_;
     StructureTally& tally_;
+    StepObserver* watcher_;
     Chain chain_;
     std::string next_;  ///< the state that the step ends with
     uint64_t trial_ = 0;
@@ -146,9 +149,9 @@ void StructureTally::merge(const StructureTally& later) {
 }
 
 StructureTally auditStructure(const AuditScene& scene, const Subject& subject, const States& states, RandomKey key,
-                              uint64_t begin, uint64_t end) {
+                              uint64_t begin, uint64_t end, StepObserver* watcher) {
     StructureTally tally;
-    Trial trial(scene, subject, key, tally);
+    Trial trial(scene, subject, key, tally, watcher);
     for (uint64_t t = begin; t < end; ++t) trial.run(states.x[t % states.x.size()], t);
     return tally;
 }

@@ -20,8 +20,8 @@ struct StructureTally {
     void merge(const StructureTally& later);
 };
 
-/// Trials [begin, end): the t-th starts at state t modulo their number.
+/// Trials [begin, end): the t-th starts at state t modulo their number. The watcher, if any, sees their steps.
 StructureTally auditStructure(const AuditScene& scene, const Subject& subject, const States& states, RandomKey key,
-                              uint64_t begin, uint64_t end);
+                              uint64_t begin, uint64_t end, StepObserver* watcher = nullptr);
 
 }  // namespace ulam::audit

@@ -173,12 +173,13 @@ TEST_CASE("what killed processes left is removed, what others write is not", "[r
     const Folder folder;
     const fs::path cell = folder / "run" / "cells" / "wall-path";
     fs::create_directories(cell);
-    // Above the largest number a process can have.
-    const std::vector<fs::path> gone = {folder / "run" / ".ulam-99999999-0.tmp", cell / ".ulam-99999999-12.tmp",
-                                        cell / fmt::format(".ulam-{}-3.tmp", ::getpid())};
-    const std::vector<fs::path> kept = {cell / fmt::format(".ulam-{}-3.tmp", ::getppid()), cell / ".ulam-99999999.tmp",
-                                        cell / ".ulam-99999999-0.tmp.exr", cell / "ulam-99999999-0.tmp",
-                                        cell / ".ulam--1-0.tmp"};
+    const std::string here = ".ulam-" + hostName() + "-";
+    // 99999999 is above the largest number a process can have.
+    const std::vector<fs::path> gone = {folder / "run" / (here + "99999999-0.tmp"), cell / (here + "99999999-12.tmp"),
+                                        cell / fmt::format("{}{}-3.tmp", here, ::getpid())};
+    const std::vector<fs::path> kept = {cell / fmt::format("{}{}-3.tmp", here, ::getppid()), cell / (here + "99999999.tmp"),
+                                        cell / (here + "99999999-0.tmp.exr"), cell / (here.substr(1) + "99999999-0.tmp"),
+                                        cell / (here + "-1-0.tmp"), cell / ".ulam-another.host-99999999-0.tmp"};
     for (const fs::path& file : gone) writeFileAtomically(file, "half");
     for (const fs::path& file : kept) writeFileAtomically(file, "whole");
     removeTemporaries(folder / "run");
