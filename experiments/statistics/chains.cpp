@@ -168,7 +168,8 @@ double nestedRhat(std::span<const Trace> chains, std::size_t chainsPerSuperchain
     }
     std::vector<double> superMeans;
     double within = 0;
-    const auto superchains = static_cast<double>(chains.size() / chainsPerSuperchain);
+    const std::size_t count = chains.size() / chainsPerSuperchain;
+    const auto superchains = static_cast<double>(count);
     for (std::size_t first = 0; first < chains.size(); first += chainsPerSuperchain) {
         std::vector<double> means;
         for (const Trace& chain : chains.subspan(first, chainsPerSuperchain)) {

@@ -1,9 +1,11 @@
 // Every sampler and every mutation for a moment, for builds with a sanitizer, which watch what happens; what comes out is
-// tested elsewhere. Arguments: a factor for the work, and the number of threads. Only the layers up to samplers and mutations, so that it builds quickly.
+// tested elsewhere. Prints the SHA-256 of each image, to be the same in every build. Arguments: a factor for the work, and
+// the number of threads. Only the layers up to samplers and mutations, so that it builds quickly.
 
 #include <cstdio>
 #include <cstdlib>
 
+#include "core/base/sha256.h"
 #include "core/mcmc/audit/balance.h"
 #include "core/mcmc/audit/jacobian.h"
 #include "core/mcmc/audit/structure.h"
@@ -37,6 +39,9 @@ void renderEverything(const std::string& sceneName, double scale, int threads) {
         const RenderResult result = render(scene, *entry->create(JsonNode(config)), options);
         double sum = 0;
         for (const Rgb& p : result.image.pixels) sum += double(p.x) + p.y + p.z;
+        const auto& pixels = result.image.pixels;
+        const std::string hash = sha256({reinterpret_cast<const char*>(pixels.data()), pixels.size() * sizeof(Rgb)});
+        std::printf("%s, %s: %s\n", sceneName.c_str(), entry->name.c_str(), hash.c_str());
         if (sum > 0) continue;
         std::printf("%s: the image of %s is black\n", entry->name.c_str(), sceneName.c_str());
         ++failures;

@@ -106,7 +106,8 @@ void readSubdivision(const Parameters& p, ShapeRecord& shape, Dictionary& dictio
     const std::vector<double> indices = indicesOf(p, control.size() / 3);
     const int levels = p.integer("levels", 3);
     p.text("scheme", "loop");
-    const double count = double(indices.size() / 3) * std::pow(4, levels);
+    const std::size_t faces = indices.size() / 3;
+    const double count = double(faces) * std::pow(4, levels);
     if (levels < 0 || levels > kFinestSubdivision || count > kMostTriangles)
         refuse(p.place(), fmt::format("{} levels of {} are too many: at most {}, and {:g} triangles", levels, p.owner(),
                                       kFinestSubdivision, kMostTriangles));
