@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cctype>
 #include <cerrno>
 #include <charconv>
 #include <csignal>
@@ -92,12 +93,12 @@ std::filesystem::path behindLinks(const std::filesystem::path& path) {
 }
 
 std::string temporaryNameOf(pid_t process, unsigned number) {
-    return fmt::format(".ulam-{}-{}.tmp", process, number);
+    return fmt::format(".ulam-{}-{}-{}.tmp", hostName(), process, number);
 }
 
-/// A temporary file's name whose process has ended. Its number may be ours by now.
+/// A temporary file's name of this host whose process has ended. Its number may be ours by now.
 bool isAbandoned(const std::string& name) {
-    constexpr std::string_view prefix = ".ulam-";
+    const std::string prefix = fmt::format(".ulam-{}-", hostName());
     if (!name.starts_with(prefix)) return false;
     const char* const end = name.data() + name.size();
     pid_t process = 0;
@@ -180,8 +181,16 @@ void requireReadable(const std::filesystem::path& path) {
     if (Descriptor(openFile(path, O_RDONLY)).number() < 0) failToRead(path, errno);
 }
 
+std::string hostName() {
+    char name[256] = {};
+    if (::gethostname(name, sizeof name - 1) != 0) return "unknown";
+    for (char* c = name; *c; ++c)
+        if (!std::isalnum(static_cast<unsigned char>(*c)) && *c != '.' && *c != '-') *c = '_';
+    return name;
+}
+
 std::string temporaryName() {
-    // Short, so that it fits wherever the final name does; taken names are left over from a killed process.
+    // Not made of the final name, which may be as long as a name can be; taken names are left over from a killed process.
     static std::atomic<unsigned> counter = 0;
     return temporaryNameOf(::getpid(), counter++);
 }

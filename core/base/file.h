@@ -37,13 +37,18 @@ void writeFileAtomically(const std::filesystem::path& path, std::span<const std:
 /// Fails like readFile where a file cannot be opened.
 void requireReadable(const std::filesystem::path& path);
 
-/// A name that this process uses once, for a file or folder that is renamed when it is whole.
+/// The host's name, of letters, digits, dots, dashes and underscores.
+std::string hostName();
+
+/// A name that this process uses once, for a file or folder that is renamed when it is whole: ".ulam-HOST-PROCESS-NUMBER.tmp",
+/// so that several hosts may write into one folder.
 std::string temporaryName();
 
 enum class Below { No, Yes };
 
 /// Removes the temporary files and folders in a folder, and on demand in the folders below, that processes left when
-/// they were killed while writing. Those of other processes that still run stay, and so does what cannot be removed.
+/// they were killed while writing. Those of other processes that still run and of other hosts stay, and so does what cannot
+/// be removed.
 void removeTemporaries(const std::filesystem::path& folder, Below below = Below::Yes);
 
 }  // namespace ulam

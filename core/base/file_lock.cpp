@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -38,9 +39,7 @@ std::string holder(int file) {
 }
 
 int writeHolder(int file) {
-    char host[256] = "";
-    ::gethostname(host, sizeof host - 1);
-    const std::string text = fmt::format("{} {}\n", ::getpid(), host);
+    const std::string text = fmt::format("{} {}\n", ::getpid(), hostName());
     if (::ftruncate(file, 0) != 0) return errno;
     for (std::size_t done = 0; done < text.size();) {
         const ssize_t written = ::pwrite(file, text.data() + done, text.size() - done, static_cast<off_t>(done));
@@ -50,17 +49,29 @@ int writeHolder(int file) {
     return 0;
 }
 
+/// Whether an open file still has its name.
+bool isNamed(int file, const std::filesystem::path& name) {
+    struct stat opened {}, named {};
+    return ::fstat(file, &opened) == 0 && ::stat(name.c_str(), &named) == 0 && opened.st_dev == named.st_dev &&
+           opened.st_ino == named.st_ino;
+}
+
 }  // namespace
 
-FileLock FileLock::claim(const std::filesystem::path& file) {
-    FileLock claimed(openFile(file, O_RDWR | O_CREAT));
-    if (!claimed.held()) failToLock(file, errno);
-    const int error = lock(claimed.descriptor_, LOCK_EX | LOCK_NB);
-    if (error == EWOULDBLOCK)
-        fail(ExitCode::CannotWrite, "{} is in use by {}", file.parent_path().string(), holder(claimed.descriptor_));
-    if (error) return FileLock(-1);
-    if (const int trouble = writeHolder(claimed.descriptor_)) failToLock(file, trouble);
-    return claimed;
+FileLock FileLock::claim(const std::filesystem::path& file, const std::string& what, LockFile released) {
+    for (;;) {
+        FileLock claimed(openFile(file, O_RDWR | O_CREAT));
+        if (!claimed.held() && errno == ENAMETOOLONG) return claimed;
+        if (!claimed.held()) failToLock(file, errno);
+        const int error = lock(claimed.descriptor_, LOCK_EX | LOCK_NB);
+        if (error == EWOULDBLOCK) fail(ExitCode::CannotWrite, "{} is in use by {}", what, holder(claimed.descriptor_));
+        if (error) return FileLock(-1);
+        // Who had the lock may have removed the file between the two calls: then others lock a new one.
+        if (!isNamed(claimed.descriptor_, file)) continue;
+        if (released == LockFile::Goes) claimed.removed_ = file;
+        if (const int trouble = writeHolder(claimed.descriptor_)) failToLock(file, trouble);
+        return claimed;
+    }
 }
 
 FileLock FileLock::await(const std::filesystem::path& folder) {
@@ -70,6 +81,7 @@ FileLock FileLock::await(const std::filesystem::path& folder) {
 }
 
 FileLock::~FileLock() {
+    if (!removed_.empty()) ::unlink(removed_.c_str());  // first: without the lock it may be another's
     if (descriptor_ >= 0) ::close(descriptor_);
 }
 

@@ -57,7 +57,8 @@ std::string readCheckpoint(const CheckpointPlan& plan) {
     const Json identity = Json::parse(rest.substr(0, identityEnd));
     if (identity != plan.identity)
         fail(ExitCode::InvalidConfig, "{} belongs to another run: {}", name, difference(identity, plan.identity));
-    return bytes.substr(lineEnd + 1 + identityEnd + 1);
+    bytes.erase(0, lineEnd + 1 + identityEnd + 1);  // in place: a state may be most of the memory
+    return bytes;
 }
 
 bool isCheckpointOf(const CheckpointPlan& plan) {

@@ -15,13 +15,20 @@ namespace ulam {
 /// Rises whenever what a state consists of, or its order, changes.
 inline constexpr int kCheckpointFormat = 1;
 
+/// Whether a render goes on from a checkpoint that is there.
+enum class Resume {
+    No,
+    Yes,       ///< and refuses one that cannot be used
+    IfUsable,  ///< or starts anew
+};
+
 /// Where a render keeps its state, and when.
 struct CheckpointPlan {
     std::filesystem::path file;
     /// What the run is (scene, sampler, budget, random numbers, program). A checkpoint of another run is refused.
     Json identity;
     double interval = 30;  ///< seconds between checkpoints; more where writing one takes over a hundredth of it
-    bool resume = false;   ///< go on from the file if it is there
+    Resume resume = Resume::No;
     /// Told when a checkpoint could not be written; the render goes on, and the checkpoint before it stays.
     std::function<void(const std::string&)> warn = [](const std::string&) {};
 };

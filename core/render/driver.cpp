@@ -38,7 +38,8 @@ public:
     }
 
     RenderResult execute() {
-        if (options_.checkpoint && options_.checkpoint->resume && std::filesystem::exists(options_.checkpoint->file)) restore();
+        const auto& plan = options_.checkpoint;
+        if (plan && plan->resume != Resume::No && std::filesystem::exists(plan->file)) restore(*plan);
         plannedCheckpoint_ = workSeconds() + interval();
         prepare();
         while (!stopped_) {
@@ -151,8 +152,14 @@ private:
         return trouble;
     }
 
-    void restore() {
-        const std::string state = readCheckpoint(*options_.checkpoint);
+    void restore(const CheckpointPlan& plan) {
+        std::string state;
+        try {
+            state = readCheckpoint(plan);
+        } catch (const Error&) {
+            if (plan.resume == Resume::IfUsable) return;
+            throw;
+        }
         ByteReader reader(state);
         archive(reader);
         run_->restore(reader);

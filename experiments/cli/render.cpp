@@ -56,7 +56,7 @@ CheckpointPlan checkpointPlan(const RenderArguments& a, const RenderJob& job) {
                      {"budget", budgetJson(job.budget)},
                      {"random_key", {job.run.key.low, job.run.key.high}}};
     plan.interval = a.checkpointInterval;
-    plan.resume = a.resume;
+    plan.resume = a.resume ? Resume::Yes : Resume::No;
     return plan;
 }
 
@@ -70,13 +70,18 @@ void checkRepetition(const RenderArguments& a, const Repetition& of, const Image
 
 void renderImage(const RenderArguments& a) {
     checkArguments(a);
+    Progress progress(a.quiet);
+    // Two renders would keep their states in one file. The lock's name is no longer than that of the file.
+    std::optional<FileLock> alone;
+    if (a.checkpointInterval > 0) alone.emplace(FileLock::claim(a.output + ".lock", a.output, LockFile::Goes));
+    if (alone && !alone->held())
+        progress.message(fmt::format("warning: {} cannot be locked: let no other render write it", a.output));
     std::optional<Repetition> repeated;
     if (!a.replay.empty()) repeated = repetition(a.replay);
     RenderJob job = repeated ? std::move(repeated->job)
                              : renderJob({a.scene, a.sampler, *a.xml, a.assignments, {a.seconds, a.spp, a.mutations, a.rays}, *a.seed});
     const auto sampler = Registry<Sampler>::instance().create(job.sampler.root());
 
-    Progress progress(a.quiet);
     const auto start = std::chrono::steady_clock::now();
     const Scene scene = buildScene(job, a.assignments);
     if (repeated && scene.hash != repeated->sceneHash)

@@ -106,7 +106,7 @@ void runExperiment(const RunArguments& a) {
     options.threads = *a.threads;
     options.keepGoing = a.keepGoing;
     makeFolder(options.runDir);
-    const FileLock lock = FileLock::claim(options.runDir / "run.lock");
+    const FileLock lock = FileLock::claim(options.runDir / "run.lock", options.runDir.string());
     if (!a.resume && fs::exists(options.runDir / "resolved.json"))
         fail(ExitCode::Usage, "{} holds a run already: give --resume to go on with it, or another -o",
              options.runDir.string());

@@ -29,11 +29,6 @@ std::string kernelValue(const char* file, std::string_view key) {
     return "";
 }
 
-std::string hostName() {
-    char name[256] = {};
-    return ::gethostname(name, sizeof name - 1) == 0 ? name : "";
-}
-
 }  // namespace
 
 std::string programVersion() {

@@ -93,10 +93,8 @@ bool renderReplicate(const Task& task, int replicate, const fs::path& taskFolder
     const fs::path folder = replicateFolder(taskFolder, replicate);
     options.checkpoint = CheckpointPlan{.file = checkpointFile(taskFolder, replicate),
                                         .identity = {{"task", task.hash()}, {"replicate", replicate}},
-                                        .resume = true};
+                                        .resume = Resume::IfUsable};
     makeFolder(folder);
-    std::error_code ignored;
-    if (!isCheckpointOf(*options.checkpoint)) fs::remove(options.checkpoint->file, ignored);
     const auto sampler = Registry<Sampler>::instance().create(JsonNode(task.parameters));
     const RenderResult result = render(task.scene->scene, *sampler, options);
     if (result.interrupted) return false;
@@ -105,6 +103,7 @@ bool renderReplicate(const Task& task, int replicate, const fs::path& taskFolder
     fields["budget"] = budgetJson(task.budget);
     fields["task_hash"] = task.hash();
     writeRun(folder, run, result, fields);
+    std::error_code ignored;
     fs::remove(options.checkpoint->file, ignored);
     return true;
 }

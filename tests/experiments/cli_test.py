@@ -5,6 +5,7 @@ import json
 import os
 import pathlib
 import signal
+import socket
 import struct
 import subprocess
 import tempfile
@@ -294,7 +295,7 @@ class Run(CliTest):
         (self.folder / "out/cells/wall-path/r000/image.exr").write_text("damaged")
         for reference in self.folder.glob("**/references/*/variance.exr"):
             reference.write_text("damaged")
-        left = self.folder / "out/cells/wall-path/.ulam-99999999-0.tmp"
+        left = self.folder / f"out/cells/wall-path/.ulam-{socket.gethostname()}-99999999-0.tmp"
         left.write_text("half")
         done = self.ulam("run", "tiny.json", "-o", "out", "--resume")
         self.assertIn("4 replicates were there already, 2 are new", done.stderr)

@@ -104,7 +104,7 @@ RenderResult session(const Scene& scene, const Job& job, const fs::path& file, i
     options.threads = threads;
     options.snapshots = 2;
     options.interrupt = &sampler.signal;
-    options.checkpoint = CheckpointPlan{.file = file, .identity = {{"sampler", job.sampler}}, .interval = interval, .resume = true};
+    options.checkpoint = CheckpointPlan{.file = file, .identity = {{"sampler", job.sampler}}, .interval = interval, .resume = Resume::Yes};
     RenderResult result = render(scene, sampler, options);
     pieces = sampler.pieces();
     return result;
