@@ -37,7 +37,7 @@ void writeFileAtomically(const std::filesystem::path& path, std::span<const std:
 /// Fails like readFile where a file cannot be opened.
 void requireReadable(const std::filesystem::path& path);
 
-/// The host's name in letters, digits, dots and dashes.
+/// The host's name, of letters, digits, dots, dashes and underscores.
 std::string hostName();
 
 /// A name that this process uses once, for a file or folder that is renamed when it is whole: ".ulam-HOST-PROCESS-NUMBER.tmp",

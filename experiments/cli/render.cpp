@@ -77,7 +77,8 @@ void renderImage(const RenderArguments& a) {
     // Two renders would keep their states in one file. The lock's name is no longer than that of the file.
     std::optional<FileLock> alone;
     if (a.checkpointInterval > 0) alone.emplace(FileLock::claim(a.output + ".lock", a.output, LockFile::Goes));
-    if (alone && !alone->held()) progress.message(fmt::format("warning: {} cannot be locked: let no other render write it", a.output));
+    if (alone && !alone->held())
+        progress.message(fmt::format("warning: {} cannot be locked: let no other render write it", a.output));
     std::optional<Repetition> repeated;
     if (!a.replay.empty()) repeated = repetition(a.replay);
     RenderJob job = repeated ? std::move(repeated->job)

@@ -11,6 +11,7 @@ import tempfile
 import time
 import unittest
 
+FAULTS = os.path.abspath(os.environ.get("ULAM_FAULTS", "build/release/tests/libulam_faults.so"))
 ULAM = os.path.abspath(os.environ.get("ULAM", "build/release/ulam"))
 FULL = os.environ.get("ULAM_TEST_LEVEL") == "full"
 
@@ -51,12 +52,12 @@ class ResumeTest(unittest.TestCase):
         self.folder = pathlib.Path(temporary.name)
         self.environment = dict(os.environ, XDG_CACHE_HOME=str(self.folder / "cache"))
 
-    def start(self, *arguments):
-        return subprocess.Popen([ULAM, *map(str, arguments)], cwd=self.folder, env=self.environment,
+    def start(self, *arguments, variables=None):
+        return subprocess.Popen([ULAM, *map(str, arguments)], cwd=self.folder, env=dict(self.environment, **(variables or {})),
                                 stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
-    def ulam(self, *arguments, expect=0):
-        process = self.start(*arguments)
+    def ulam(self, *arguments, expect=0, variables=None):
+        process = self.start(*arguments, variables=variables)
         out, err = process.communicate(timeout=600)
         self.assertEqual(process.returncode, expect, f"{arguments}\n{out}\n{err}")
         return err
@@ -162,7 +163,12 @@ class ResumeTest(unittest.TestCase):
         _, err = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 143, err)
         self.assertEqual([f.name for f in place.iterdir()], ["checkpoint"])
-        self.ulam("run", "long.json", "-o", "stopped", "--resume")
+        with tempfile.NamedTemporaryFile("r") as log:
+            self.ulam("run", "long.json", "-o", "stopped", "--resume",
+                      variables={"LD_PRELOAD": FAULTS, "ULAM_FAULT_BELOW": str(self.folder.resolve()) + "/", "ULAM_FAULT_LOG": log.name})
+            calls = log.read().splitlines()
+        # A state may be most of the memory: it is read once.
+        self.assertEqual(calls.count(f"open-read {(place / 'checkpoint').resolve()}"), 1, calls)
         again = json.loads((place / "result.json").read_text())
         self.assertEqual(again["sessions"], 2)
         self.assertEqual((place / "image.exr").read_bytes(), (result.parent / "image.exr").read_bytes())

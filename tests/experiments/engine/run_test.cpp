@@ -74,8 +74,6 @@ TEST_CASE("a run leaves every file of every replicate", "[run]") {
                                     "non_finite",
                                     "bias_ledger",
                                     "peak_rss_bytes",
-                                    "estimated_memory_bytes",
-                                    "simd",
                                     "image_sha256",
                                     "units",
                                     "snapshots",
@@ -173,13 +171,19 @@ TEST_CASE("what killed processes left is removed, what others write is not", "[r
     const Folder folder;
     const fs::path cell = folder / "run" / "cells" / "wall-path";
     fs::create_directories(cell);
-    const std::string here = ".ulam-" + hostName() + "-";
-    // 99999999 is above the largest number a process can have.
-    const std::vector<fs::path> gone = {folder / "run" / (here + "99999999-0.tmp"), cell / (here + "99999999-12.tmp"),
-                                        cell / fmt::format("{}{}-3.tmp", here, ::getpid())};
-    const std::vector<fs::path> kept = {cell / fmt::format("{}{}-3.tmp", here, ::getppid()), cell / (here + "99999999.tmp"),
-                                        cell / (here + "99999999-0.tmp.exr"), cell / (here.substr(1) + "99999999-0.tmp"),
-                                        cell / (here + "-1-0.tmp"), cell / ".ulam-another.host-99999999-0.tmp"};
+    const std::string host = hostName();
+    const auto temporary = [](const std::string& of, int64_t process, int number) {
+        return fmt::format(".ulam-{}-{}-{}.tmp", of, process, number);
+    };
+    constexpr int64_t kEnded = 99'999'999;  // above the largest number a process can have
+    const std::vector<fs::path> gone = {folder / "run" / temporary(host, kEnded, 0), cell / temporary(host, kEnded, 12),
+                                        cell / temporary(host, ::getpid(), 3)};
+    const std::vector<fs::path> kept = {cell / temporary(host, ::getppid(), 3), cell / fmt::format(".ulam-{}-{}.tmp", host, kEnded),
+                                        cell / (temporary(host, kEnded, 0) + ".exr"), cell / temporary(host, kEnded, 0).substr(1),
+                                        cell / temporary(host, -1, 0),
+                                        // Of other hosts, one whose name begins as this one's.
+                                        cell / temporary(host + "-1", kEnded, 0), cell / temporary("x" + host, kEnded, 0)};
+    CHECK(temporaryName().starts_with(fmt::format(".ulam-{}-{}-", host, ::getpid())));
     for (const fs::path& file : gone) writeFileAtomically(file, "half");
     for (const fs::path& file : kept) writeFileAtomically(file, "whole");
     removeTemporaries(folder / "run");
