@@ -51,8 +51,9 @@ void requireMemory(const std::string& purpose, const MemoryNeeds& held, const Me
     parts.push_back({"the program and what else it holds", std::max(0.0, double(residentBytes()) - totalBytes(held)), ""});
     parts.insert(parts.end(), needed.begin(), needed.end());
     const double total = totalBytes(parts);
+    const uint64_t expected = std::max(uint64_t(total), peakResidentBytes());
     uint64_t most = expectedPeak;
-    while (most < uint64_t(total) && !expectedPeak.compare_exchange_weak(most, uint64_t(total))) {}
+    while (most < expected && !expectedPeak.compare_exchange_weak(most, expected)) {}
     if (total <= double(limit)) return;
     std::ranges::stable_sort(parts, std::greater(), &MemoryNeed::bytes);
     std::string list;

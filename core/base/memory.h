@@ -32,7 +32,8 @@ void limitMemory(uint64_t bytes);
 /// InvalidConfig where all together exceed the limit; the message has every part, the largest first.
 void requireMemory(const std::string& purpose, const MemoryNeeds& held, const MemoryNeeds& needed);
 
-/// The most that all together have come to in any of these calls: the estimate of the process's peak.
+/// The most that all together came to in any of these calls, and at least what the process had had by then: the estimate of
+/// its peak.
 uint64_t expectedPeakBytes();
 
 }  // namespace ulam

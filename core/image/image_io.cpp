@@ -14,6 +14,7 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/base/memory.h"
 #include "core/image/srgb.h"
 
 namespace ulam {
@@ -95,6 +96,11 @@ ImageFile openImage(const std::string& path) {
         fail(ExitCode::InvalidConfig, "{}: {} x {} pixels are more than the limit of {}", path, spec.width, spec.height,
              kMaxImagePixels);
     }
+    // As it is read, and packed, say, while that is still there.
+    const double bytes = 2.0 * spec.width * spec.height * sizeof(Rgb);
+    constexpr double kLarge = 16 << 20;
+    if (bytes > kLarge)
+        requireMemory("reading " + path, {}, {{fmt::format("a picture of {} x {} pixels", spec.width, spec.height), bytes, "a smaller picture"}});
     return file;
 }
 
