@@ -127,9 +127,8 @@ std::string readFile(const std::filesystem::path& path, std::size_t maxBytes) {
     std::string bytes;
     struct stat status {};
     if (::fstat(file.number(), &status) == 0 && S_ISREG(status.st_mode)) {
-        constexpr std::size_t kLarge = 16 << 20;
         const std::size_t size = std::min(maxBytes, static_cast<std::size_t>(status.st_size));
-        if (size > kLarge) requireMemory("reading " + path.string(), {}, {{"the file", double(size), "a smaller file"}});
+        requireMemoryToRead(path.string(), {"the file", double(size), "a smaller file"});
         bytes.reserve(size);
     }
     char block[1 << 16];

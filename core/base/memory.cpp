@@ -65,6 +65,11 @@ void requireMemory(const std::string& purpose, const MemoryNeeds& held, const Me
     fail(ExitCode::InvalidConfig, "{} needs about {} of memory, and --max-memory allows {}:{}", purpose, sizeText(total), sizeText(double(limit)), list);
 }
 
+void requireMemoryToRead(const std::string& path, const MemoryNeed& content) {
+    constexpr double kLarge = 16 << 20;
+    if (content.bytes > kLarge) requireMemory("reading " + path, {}, {content});
+}
+
 uint64_t expectedPeakBytes() { return expectedPeak; }
 
 }  // namespace ulam

@@ -32,6 +32,9 @@ void limitMemory(uint64_t bytes);
 /// InvalidConfig where all together exceed the limit; the message has every part, the largest first.
 void requireMemory(const std::string& purpose, const MemoryNeeds& held, const MemoryNeeds& needed);
 
+/// The same before a file is read, where it is large: small ones are not worth the look.
+void requireMemoryToRead(const std::string& path, const MemoryNeed& content);
+
 /// The most that all together came to in any of these calls, and at least what the process had had by then: the estimate of
 /// its peak.
 uint64_t expectedPeakBytes();

@@ -97,10 +97,8 @@ ImageFile openImage(const std::string& path) {
              kMaxImagePixels);
     }
     // As it is read, and packed, say, while that is still there.
-    const double bytes = 2.0 * spec.width * spec.height * sizeof(Rgb);
-    constexpr double kLarge = 16 << 20;
-    if (bytes > kLarge)
-        requireMemory("reading " + path, {}, {{fmt::format("a picture of {} x {} pixels", spec.width, spec.height), bytes, "a smaller picture"}});
+    requireMemoryToRead(path, {fmt::format("a picture of {} x {} pixels", spec.width, spec.height),
+                               2.0 * spec.width * spec.height * sizeof(Rgb), "a smaller picture"});
     return file;
 }
 

@@ -33,7 +33,7 @@ public:
     /// InvalidConfig where the memory for it is not allowed.
     void finalize();
 
-    /// What it takes: its meshes and pictures, and the ray tracer's tree, once built or at most while it is built.
+    /// What it takes: its meshes and pictures, and last the ray tracer's tree, once built or at most while it is built.
     enum class Tree { Built, Building };
     MemoryNeeds memory(Tree tree = Tree::Built) const;
 

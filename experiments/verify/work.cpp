@@ -68,7 +68,7 @@ TiledEstimate preciseRuns(const Work& work, const MakeRuns& make, double leastFa
         const double allowed = deviation * deviation / 2;
         factor = std::clamp(factor * count / work.runs * kSafety * runs.energy.varianceOfMean / allowed, leastFactor, mostFactor);
         runs = make(factor, work.runs, part), count = work.runs;
-        if (runs.energy.varianceOfMean <= allowed) break;
+        if (runs.energy.varianceOfMean <= allowed || factor >= mostFactor) break;
     }
     return runs;
 }

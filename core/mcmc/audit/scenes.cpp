@@ -144,17 +144,19 @@ Json texturedOutdoors() {
     const auto checks = [](std::vector<double> a, std::vector<double> b, double times) {
         return Json{{"type", "checkerboard"}, {"color0", a}, {"color1", b}, {"to_uv", Json::array({scale(times, times, 1)})}};
     };
-    Json scene = {{"type", "scene"}, {"sensor", camera(0, 0.5, 4, 40)}};
+    Json scene = {{"type", "scene"}, {"sensor", camera(0, 1.4, 4, 40)}};
     scene["sensor"]["film"] = {{"type", "hdrfilm"},
                                {"width", kFilmSize + 16},
-                               {"height", kFilmSize + 14},
+                               {"height", kFilmSize + 8},
                                {"crop_width", kFilmSize},
                                {"crop_height", kFilmSize},
                                {"crop_offset_x", 10},
                                {"crop_offset_y", 3},
                                {"rfilter", {{"type", "gaussian"}, {"stddev", 0.8}}}};
-    scene["ground"] = shape("rectangle", {scale(5, 5, 1), rotate('x', -90), translate(0, -0.7, 0)},
-                            {{"type", "diffuse"}, {"reflectance", checks({0.7, 0.5, 0.3}, {0.1, 0.2, 0.3}, 8)}});
+    const Json tiles = {{"type", "diffuse"}, {"reflectance", checks({0.7, 0.5, 0.3}, {0.1, 0.2, 0.3}, 4)}};
+    // They fill the view: few of the paths that a walk from the light makes would show the sky itself.
+    scene["ground"] = shape("rectangle", {scale(2.5, 2.5, 1), rotate('x', -90), translate(0, -0.7, 0)}, tiles);
+    scene["wall"] = shape("rectangle", {scale(2.5, 1, 1), translate(0, 0.3, -2.5)}, tiles);
     scene["ball"] = sphere(-0.9, -0.2, 0.2, 0.5,
                            {{"type", "roughplastic"},
                             {"alpha", 0.3},
