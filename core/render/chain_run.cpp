@@ -190,9 +190,8 @@ std::vector<MemoryPhase> ChainRun::memory(const RunContext& context, const Chain
     const double film = Film::bytes(context.pixels(), false, true);
     // Of a chain's path only what is used is written.
     const double state = chains * (sizeof(Chain) * (limits.maxDepth + 2.0) / (kMaxDepth + 2.0) + trace);
-    const auto films = [&](int n) { return MemoryNeed{fmt::format("the films of {} threads", n), n * film, "a smaller film or fewer threads"}; };
     // Seeding, work, and between rounds of work, when one film has everything.
-    return {{{bootstrap, held}, bootstrap.bytes}, {{films(context.workers), held}}, {{films(1), held, reported}, film + state}};
+    return {{{bootstrap, held}, bootstrap.bytes}, {{filmsOf(context.workers, film), held}}, {{filmsOf(1, film), held, reported}, film + state}};
 }
 
 bool ChainRun::prepare(const StopFunction& stop) {

@@ -80,7 +80,7 @@ private:
         constexpr double kCounters = 1 << 20;  // in a state, beside what is large
         const double image = pixels_ * sizeof(Rgb), snapshots = options_.snapshots * image;
         for (MemoryPhase& phase : phases) {
-            phase.parts.push_back({fmt::format("{} images", options_.snapshots + 1), image + snapshots, "a smaller film or fewer snapshots"});
+            phase.parts.push_back({options_.snapshots > 0 ? fmt::format("the image and {} snapshots", options_.snapshots) : "the image", image + snapshots, "a smaller film or fewer snapshots"});
             phase.state += snapshots + kCounters;
             if (options_.checkpoint) phase.parts.push_back({"a checkpoint while it is written", phase.state, "--checkpoint 0"});
             stateBytes_ = std::max(stateBytes_, size_t(phase.state));

@@ -122,7 +122,7 @@ std::vector<MemoryPhase> IndependentRun::memory(const RunContext& context, const
     // k edges have k + 1 techniques that end on the sensor or see it, each with two images.
     const double images = depth * (depth + 3), techniques = images * Film::bytes(pixels, true, false);
     const auto phase = [&](int films) {
-        MemoryNeeds parts = {{fmt::format("the films of {} threads", films), films * film, "a smaller film or fewer threads"},
+        MemoryNeeds parts = {filmsOf(films, film),
                              {"the order of pixels", pixels * sizeof(int), "a smaller film"}};
         if (images > 0) parts.push_back({fmt::format("{} films of techniques for each", images), films * techniques, "no technique_images or a smaller max_depth"});
         return parts;

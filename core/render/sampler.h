@@ -33,6 +33,12 @@ struct MemoryPhase {
     double state = 0;  ///< bytes that SamplerRun::save writes then
 };
 
+/// Films of as many threads, all there at once.
+inline MemoryNeed filmsOf(int threads, double bytesEach) {
+    const std::string whose = threads == 1 ? "the film of a thread" : fmt::format("the films of {} threads", threads);
+    return {whose, threads * bytesEach, "a smaller film or fewer threads"};
+}
+
 /// One run of a sampler. Work comes in units (samples, or mutations for chains), numbered from 0. The image depends on
 /// which units are done and not on who did them or when.
 class SamplerRun {

@@ -61,7 +61,7 @@ Json replayTrial(const std::string& token) {
     } else if (check == "balance") {
         failures = auditBalance(scene, subject, states, key, trial, trial + 1, &describer).failures;
     } else if (check == "jacobian") {
-        auditJacobian(scene, subject, states, key, trial, trial + 1, &describer);
+        failures = judge(auditJacobian(scene, subject, states, key, trial, trial + 1, &describer)).failures;
     } else {
         Chain chain;
         chain.x = states.x[trial % states.x.size()];

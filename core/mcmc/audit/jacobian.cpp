@@ -56,6 +56,7 @@ private:
     void ofPrimaryMap(const Sample& state, uint64_t trial) {
         Sample x = state;
         Random random = randomOf(key_, Stream::Jacobian, trial);
+        ++tally_.inversions;
         if (!std::isfinite(target_->redrawTechnique(x, random, true))) return;
         watch(x, {});
         std::vector<Block> numbers;
@@ -73,7 +74,7 @@ private:
         Path path;
         PathFactors factors;
         if (!map(numbers, path, factors)) {
-            ++tally_.noisy;  // a path at the edge of visibility
+            if (tally_.notInverted++ == 0) tally_.firstNotInverted = trial;  // a few, at the edge of visibility
             return;
         }
         const double stated = densities(scene_.scene, scene_.limits, path, factors).log(x.technique.s);
@@ -113,6 +114,8 @@ private:
 }  // namespace
 
 void JacobianTally::merge(const JacobianTally& later) {
+    if (notInverted == 0) firstNotInverted = later.firstNotInverted;
+    inversions += later.inversions, notInverted += later.notInverted;
     proposals += later.proposals, noisy += later.noisy, notSquare += later.notSquare;
     for (const auto& [key, comparisons] : later.classes)
         classes[key].insert(classes[key].end(), comparisons.begin(), comparisons.end());
@@ -129,6 +132,9 @@ JacobianTally auditJacobian(const AuditScene& scene, const Subject& subject, con
 
 JacobianVerdict judge(const JacobianTally& tally) {
     JacobianVerdict verdict;
+    if (double(tally.notInverted) > kNotInvertedShare * double(tally.inversions))
+        verdict.failures.add(tally.firstNotInverted,
+                             fmt::format("{} of {} states have no numbers that make them again", tally.notInverted, tally.inversions));
     for (const auto& [key, comparisons] : tally.classes) {
         // What one state says again and again is said once.
         std::map<uint64_t, std::vector<double>> byState;

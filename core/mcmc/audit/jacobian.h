@@ -18,6 +18,9 @@ namespace ulam::audit {
 inline constexpr double kJacobianTolerance = 0.01, kJacobianScatter = 0.12, kScatterQuantile = 0.75;
 inline constexpr size_t kFewestStates = 7, kFewestForScatter = 20;
 
+/// Largest share of states with light that may have no numbers that make them again.
+inline constexpr double kNotInvertedShare = 1e-3;
+
 struct JacobianTally {
     struct Comparison {
         double excess;  ///< log stated − log of the branch found
@@ -25,6 +28,7 @@ struct JacobianTally {
         uint64_t state, trial;  ///< where it came from, the bootstrap sample; and its number
     };
     uint64_t proposals = 0, noisy = 0, notSquare = 0;
+    uint64_t inversions = 0, notInverted = 0, firstNotInverted = 0;  ///< of states to numbers, those that failed, the first's trial
     std::map<std::string, std::vector<Comparison>> classes;
     void merge(const JacobianTally& later);
 };
