@@ -122,8 +122,9 @@ Finding images(const MutationCase& c, References& references, bool mixed) {
     for (const Place& place : c.places) {
         const auto scene = std::find(scenes.begin(), scenes.end(), place.scene->name);
         if (scene == scenes.end()) continue;
+        // Targets take turns: what a scene has not shown of the mutation alone it shows of the mix.
         const size_t turn = size_t(scene - scenes.begin()) + size_t(mixed);
-        if (!work.imagesOfAllTargets && place.target != c.targets[turn % c.targets.size()]) continue;
+        if (place.target != c.targets[turn % c.targets.size()]) continue;
         const auto render = [&](double factor, int runs, const char* part) {
             const ImageRun run(c, place, mixed, factor);
             return renderTiled(place.scene->scene, run.sampler, run.budget, runs, c.settings.seed,

@@ -1,7 +1,5 @@
 #include "experiments/verify/mutation_audit.h"
 
-#include <chrono>
-
 #include "experiments/verify/mutation_levels.h"
 
 namespace ulam::verify {
@@ -18,24 +16,25 @@ MutationCase::MutationCase(const std::string& mutation, const AuditSettings& aud
 SubjectReport auditMutation(const std::string& mutation, const AuditSettings& settings, References& references) {
     MutationCase c(mutation, settings);
     SubjectReport report{.kind = "mutation", .name = mutation};
-    const auto level = [&](const auto& audit) {
+    double done = 0;
+    // `share` of the time, about: of mutations of either space and at either level.
+    const auto level = [&](const char* what, double share, const auto& check) {
         if (settings.stopAtFirst && report.rejected()) return;
-        const auto start = std::chrono::steady_clock::now();
-        report.findings.push_back(audit());
-        report.findings.back().seconds =
-            std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        settings.progress(done, what);
+        report.findings.push_back(timed(check));
+        done += share;
     };
-    level([&] { return findStates(c); });
+    level("states", 0.01, [&] { return findStates(c); });
     if (c.places.empty()) return report;
-    level([&] { return auditStructure(c); });
-    level([&] { return auditBalance(c); });
-    level([&] { return auditJacobian(c); });
-    level([&] { return auditDensities(c); });
-    level([&] { return auditInvariance(c); });
-    level([&] { return auditImages(c, references); });
-    level([&] { return auditMixedInvariance(c); });
-    level([&] { return auditMixedImages(c, references); });
-    level([&] { return reportMixing(c, references); });
+    level("structure", 0.05, [&] { return auditStructure(c); });
+    level("balance", 0.02, [&] { return auditBalance(c); });
+    level("jacobian", 0.02, [&] { return auditJacobian(c); });
+    level("density", 0.1, [&] { return auditDensities(c); });
+    level("invariance", 0.15, [&] { return auditInvariance(c); });
+    level("images", 0.25, [&] { return auditImages(c, references); });
+    level("mixed invariance", 0.15, [&] { return auditMixedInvariance(c); });
+    level("mixed images", 0.2, [&] { return auditMixedImages(c, references); });
+    level("mixing", 0.05, [&] { return reportMixing(c, references); });
     return report;
 }
 

@@ -1,7 +1,5 @@
 #include "experiments/verify/sampler_audit.h"
 
-#include <chrono>
-
 #include "core/base/error.h"
 
 namespace ulam::verify {
@@ -39,13 +37,16 @@ std::string compareSampler(Json config, const audit::AuditScene& scene, const st
     return {};
 }
 
-SubjectReport auditSampler(const std::string& sampler, const AuditSettings& settings, References& references) {
-    const auto start = std::chrono::steady_clock::now();
+namespace {
+
+Finding auditImages(const std::string& sampler, const AuditSettings& settings, References& references) {
     const Work& work = settings.work;
-    SubjectReport report{.kind = "sampler", .name = sampler};
     std::vector<ImageComparison> comparisons;
     std::vector<std::string> notJudged;
-    for (const auto& scene : audit::auditScenes()) {
+    const auto& scenes = audit::auditScenes();
+    for (size_t i = 0; i < scenes.size(); ++i) {
+        const auto& scene = scenes[i];
+        settings.progress(double(i) / double(scenes.size()), scene->name);
         const std::string why = compareSampler(samplerConfig(sampler, *scene), *scene, fmt::format("{} by {}", scene->name, sampler), settings, references, comparisons);
         if (!why.empty()) notJudged.push_back(fmt::format("not judged in {}: {}", scene->name, why));
         // Stopping early, the correction is for fewer tests: a false alarm is at most as many times likelier as there are scenes.
@@ -54,8 +55,14 @@ SubjectReport auditSampler(const std::string& sampler, const AuditSettings& sett
     Finding finding = judgeImages(comparisons, work);
     if (comparisons.empty()) finding.outcome = Outcome::NotAudited, finding.summary = "no audit scene suits it";
     finding.details.insert(finding.details.end(), notJudged.begin(), notJudged.end());
-    finding.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    report.findings.push_back(std::move(finding));
+    return finding;
+}
+
+}  // namespace
+
+SubjectReport auditSampler(const std::string& sampler, const AuditSettings& settings, References& references) {
+    SubjectReport report{.kind = "sampler", .name = sampler};
+    report.findings.push_back(timed([&] { return auditImages(sampler, settings, references); }));
     return report;
 }
 

@@ -41,16 +41,21 @@ Report verify(const Options& options) {
     report.level = options.level == Level::Full ? "full" : "quick";
     const Work work = options.level == Level::Full ? fullWork() : quickWork();
     References references(work, options.seed, options.threads);
-    const auto settings = [&](size_t subjects) { return AuditSettings{work, options.seed, options.threads, subjects, options.stopAtFirst}; };
+    size_t asked = 0, subjects = 0;
+    const auto settings = [&](const std::string& name, size_t ofItsKind) {
+        const auto progress = [&, name](double done, const std::string& what) {
+            options.progress((double(report.subjects.size()) + done) / double(subjects), fmt::format("{}: {}", name, what));
+        };
+        return AuditSettings{work, options.seed, options.threads, ofItsKind, options.stopAtFirst, progress};
+    };
     std::vector<Kind> kinds{
         {"kernel", options.kernels, {"metropolis_hastings"}, [](const std::string& name, size_t) { return auditKernel(name); }},
         {"target", options.targets, registeredNames<Importance>(),
-         [&](const std::string& name, size_t n) { return auditTarget(name, settings(n), references); }},
+         [&](const std::string& name, size_t n) { return auditTarget(name, settings(name, n), references); }},
         {"mutation", options.mutations, registeredNames<Mutation>(),
-         [&](const std::string& name, size_t n) { return auditMutation(name, settings(n), references); }},
+         [&](const std::string& name, size_t n) { return auditMutation(name, settings(name, n), references); }},
         {"sampler", options.samplers, registeredNames<Sampler>(),
-         [&](const std::string& name, size_t n) { return auditSampler(name, settings(n), references); }}};
-    size_t asked = 0, subjects = 0;
+         [&](const std::string& name, size_t n) { return auditSampler(name, settings(name, n), references); }}};
     for (const Kind& kind : kinds) kind.checkNames(), asked += kind.asked.size();
     for (Kind& kind : kinds) {
         if (asked == 0) kind.asked = kind.known;
@@ -58,7 +63,6 @@ Report verify(const Options& options) {
     }
     for (const Kind& kind : kinds)
         for (const std::string& name : kind.asked) {
-            if (options.progress) options.progress(double(report.subjects.size()) / double(subjects), name);
             SubjectReport subject = kind.audit(name, kind.asked.size());
             subject.replay = fmt::format("ulam verify --{} {} --level {} --seed {}", kind.name, name, report.level, options.seed);
             if (options.finished) options.finished(subject);

@@ -15,7 +15,7 @@ struct Options {
     uint64_t seed = 1;
     int threads = 1;
     bool stopAtFirst = false;  ///< a subject's audit ends with its first rejection
-    std::function<void(double fraction, const std::string& what)> progress = {};
+    std::function<void(double fraction, const std::string& what)> progress = [](double, const std::string&) {};
     std::function<void(const SubjectReport&)> finished = {};  ///< after each subject
 };
 

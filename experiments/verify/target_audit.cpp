@@ -1,7 +1,5 @@
 #include "experiments/verify/target_audit.h"
 
-#include <chrono>
-
 #include "core/mcmc/audit/enumeration.h"
 #include "core/mcmc/audit/subject.h"
 #include "experiments/verify/sampler_audit.h"
@@ -11,14 +9,6 @@ namespace {
 
 constexpr int kColours = 10'000;
 constexpr double kHomogeneity = 1e-12;
-
-template <class Audit>
-Finding timed(const Audit& audit) {
-    const auto start = std::chrono::steady_clock::now();
-    Finding finding = audit();
-    finding.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    return finding;
-}
 
 /// Colours over many magnitudes; often with dark channels.
 Finding auditFunction(const Importance& target, RandomKey key) {
@@ -50,9 +40,11 @@ Finding auditFunction(const Importance& target, RandomKey key) {
 Finding auditImages(const std::string& target, const AuditSettings& settings, References& references) {
     const Work& work = settings.work;
     std::vector<ImageComparison> comparisons;
+    double done = 0;
     for (const auto& scene : audit::auditScenes()) {
         if (std::find(work.aloneImages.begin(), work.aloneImages.end(), scene->name) == work.aloneImages.end()) continue;
         for (const char* sampler : {"mlt", "pssmlt"}) {
+            settings.progress(done++ / (2 * double(work.aloneImages.size())), fmt::format("{} by {}", scene->name, sampler));
             Json config = samplerConfig(sampler, *scene);
             config["target"] = target;
             compareSampler(config, *scene, fmt::format("{} by {} for {}", scene->name, sampler, target), settings, references, comparisons);

@@ -14,7 +14,6 @@ Work quickWork() {
     w.bootstrap = 20'000, w.pathMutations = 64'000, w.primaryMutations = 16'384, w.samplesPerPixel = 24;
     w.energyWidth = 0.005;
     w.aloneImages = {"specular", "outdoor"}, w.mixedImages = {"specular"};
-    w.imagesOfAllTargets = false;
     w.partners = 3;
     w.mixingChains = 100, w.mixingSteps = 1024;
     return w;
@@ -29,7 +28,6 @@ Work fullWork() {
     w.bootstrap *= 25, w.pathMutations *= 25, w.primaryMutations *= 25, w.samplesPerPixel *= 25;
     w.energyWidth = 0.001;
     w.aloneImages = w.mixedImages = {"diffuse", "specular", "outdoor"};
-    w.imagesOfAllTargets = true;
     w.partners = 100;
     w.mixingSteps *= 20;
     return w;

@@ -1,6 +1,7 @@
 #pragma once
 // How much the audit does, and what its parts share.
 
+#include <chrono>
 #include <functional>
 #include <map>
 #include <string_view>
@@ -26,7 +27,6 @@ struct Work {
     double bootstrap, pathMutations, primaryMutations, samplesPerPixel;  ///< each run
     double energyWidth;                                 ///< largest half width of the energy interval, relative
     std::vector<std::string> aloneImages, mixedImages;  ///< scenes of L5 and L6
-    bool imagesOfAllTargets;  ///< or of one in each scene, in turn
     size_t partners;                                    ///< of L6
     int mixingChains;                                   ///< of L7
     double mixingSteps;                                 ///< of each
@@ -40,7 +40,18 @@ struct AuditSettings {
     int threads;
     size_t subjects;           ///< that share the suite's level
     bool stopAtFirst = false;  ///< leaves out what comes after a subject's first rejection
+    /// Share of the subject's work that is done, and what comes next.
+    std::function<void(double done, const std::string& what)> progress = [](double, const std::string&) {};
 };
+
+/// The finding of a check, with the time it took.
+template <class Check>
+Finding timed(const Check& check) {
+    const auto start = std::chrono::steady_clock::now();
+    Finding finding = check();
+    finding.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return finding;
+}
 
 /// Chooses the random numbers of a part of the audit by its name.
 uint64_t cellOf(std::string_view name);

@@ -48,7 +48,8 @@ class Tools(unittest.TestCase):
 
     def run_program(self, program):
         print(program, flush=True)
-        self.output(program, ULAM=str(ROOT / RELEASE / "ulam"), UBSAN_OPTIONS="print_stacktrace=1")
+        self.output(program, ULAM=str(ROOT / RELEASE / "ulam"), UBSAN_OPTIONS="print_stacktrace=1",
+                    LSAN_OPTIONS="print_suppressions=0:suppressions=tests/tools/leaks.supp")
 
     def test_address_and_undefined_behaviour(self):
         # An unoptimised build of another compiler, but the same bytes.

@@ -65,8 +65,10 @@ Json specularBox() {
     Json scene = box();
     scene["mirror"] = block({{"type", "conductor"}});
     scene["glass"] = sphere(-0.35, -0.55, 0.25, 0.4, {{"type", "dielectric"}});
-    // Radiance inside glass is scaled by its index, which shows on what is inside.
-    scene["core"] = sphere(-0.35, -0.6, 0.25, 0.2, diffuse(0.7, 0.6, 0.2));
+    // Radiance inside glass is scaled by its index. Light that comes in and leaves again does not show it; a lamp does.
+    scene["core"] = sphere(-0.45, -0.6, 0.2, 0.17, diffuse(0.8, 0.7, 0.3));
+    scene["bulb"] = sphere(-0.17, -0.55, 0.35, 0.14, diffuse(0, 0, 0));
+    scene["bulb"]["emitter"] = {{"type", "area"}, {"radiance", {1, 1.1, 1.2}}};
     return scene;
 }
 

@@ -18,7 +18,7 @@ struct AuditScene {
 };
 
 /// "diffuse": a box with an area light and a block. "specular": the same with a mirror and a glass sphere around a
-/// diffuse one, so that specular chains stand on either side of diffuse vertices. "outdoor": a point light and a
+/// diffuse one and a lamp, so that specular chains stand on either side of diffuse vertices and behind a light. "outdoor": a point light and a
 /// constant environment on a mesh with smooth normals, without specular surfaces. "lens": the specular box through a
 /// thin lens, with a spot and a cut-out sheet. "rough": rough metal and glass, coats and a pane, in the sun.
 /// "textured": textures under a clear sky, through a wide filter and a crop window whose border cuts a lamp. Built once
