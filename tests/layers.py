@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""The house's order: who includes whom, and that the registry and the files say the same. Ends with exit code 1 and a
-line for each breach."""
+"""The house's order: who includes whom, that the registry and the files say the same, and that a type's name means one
+type. Ends with exit code 1 and a line for each breach."""
 
 import json
 import os
@@ -29,6 +29,9 @@ ONLY_IN = {"OpenImageIO/": "core/image/", "embree": "core/scene/", "pugixml": "c
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.M)
 REGISTRATION = re.compile(r'^ULAM_REGISTER(?:_[A-Z]+)?\(\s*(?:::ulam::)?\w+\s*,(?:[^"]*,)?\s*"([^"]+)"', re.M)
+
+NAMESPACE = re.compile(r"namespace\s*([\w:]*)\s*\{(?!.*\})")
+TYPE = re.compile(r"(?:struct|class|union|enum(?: class)?)\s+(\w+)\b(?!::)[^;]*\{")
 
 
 def layer_of(path):
@@ -74,8 +77,26 @@ def registry_breaches(program):
             yield f"`ulam list {kind}` has {name} of {file}, which no file of {folder} registers"
 
 
+def name_breaches():
+    """Types of one name in one namespace are merged by the linker, though they differ: memory is overwritten."""
+    places = {}
+    for folder in [*MAY_INCLUDE, "tests"]:
+        for file in sources(folder):
+            namespaces = []
+            for line in file.read_text(encoding="utf8").splitlines():
+                if opened := NAMESPACE.match(line):
+                    namespaces.append(opened[1])
+                elif line.startswith("}  // namespace"):
+                    namespaces.pop()
+                elif (defined := TYPE.match(line)) and "" not in namespaces:
+                    places.setdefault("::".join([*namespaces, defined[1]]), set()).add(file.relative_to(root).as_posix())
+    for name, files in sorted(places.items()):
+        if len(files) > 1:
+            yield f"{name} is defined in {' and in '.join(sorted(files))}"
+
+
 def main():
-    breaches = list(include_breaches())
+    breaches = [*include_breaches(), *name_breaches()]
     breaches += registry_breaches(os.environ.get("ULAM", root / "build/release/ulam"))
     for breach in breaches:
         print(breach)

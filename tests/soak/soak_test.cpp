@@ -76,7 +76,7 @@ Slope slope(const std::vector<Memory>& rounds, double Memory::*quantity) {
 
 std::map<std::string, Json> soakScenes() {
     std::map<std::string, Json> scenes;
-    for (const NamedScene& scene : pathScenes()) scenes[scene.name] = scene.dictionary;
+    for (const PathScene& scene : pathScenes()) scenes[scene.name] = scene.dictionary;
     for (const auto* entry : Registry<Generator>::instance().entries()) scenes[entry->name] = {{"type", entry->name}};
     scenes["terrain"]["cells"] = 50;
     return scenes;

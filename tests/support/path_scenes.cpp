@@ -259,8 +259,8 @@ Scene buildScene(const Json& dictionary, const Json& film) {
     return describeScene(dictionary).build(film);
 }
 
-const std::vector<NamedScene>& pathScenes() {
-    static const std::vector<NamedScene> scenes = {
+const std::vector<PathScene>& pathScenes() {
+    static const std::vector<PathScene> scenes = {
         {"diffuse", diffuseRoom(), false, false},   {"glass_and_mirror", glassAndMirror(), true, false},
         {"point_light", pointLight(), true, false}, {"environment", environment(), true, true},
         {"many_lights", manyLights(), true, true},  {"shading_normals", shadingNormals(), true, false},
@@ -272,8 +272,8 @@ const std::vector<NamedScene>& pathScenes() {
     return scenes;
 }
 
-const NamedScene& pathScene(const std::string& name) {
-    for (const NamedScene& scene : pathScenes())
+const PathScene& pathScene(const std::string& name) {
+    for (const PathScene& scene : pathScenes())
         if (scene.name == name) return scene;
     fail(ExitCode::Usage, "no test scene {}", name);
 }

@@ -8,7 +8,7 @@
 
 namespace ulam {
 
-struct NamedScene {
+struct PathScene {
     std::string name;
     Json dictionary;
     bool hasDelta = false;  ///< mirrors or glass
@@ -24,8 +24,8 @@ Scene buildScene(const Json& dictionary, const Json& film = {{"width", 32}, {"he
 /// sky at once; shading_normals: a curved surface made of few triangles; rough: microfacets, coats and a pane; thin_lens: depth of field, a spot, a cut-out
 /// sheet; sun_and_sky: a picture of the sky, parallel light, textures, a disc and a cylinder; layers: mixtures, masks, bumps;
 /// instances: shape groups placed by any affine maps; clear_sky: a sky above its horizon, with a wide sun.
-const std::vector<NamedScene>& pathScenes();
+const std::vector<PathScene>& pathScenes();
 /// By name.
-const NamedScene& pathScene(const std::string& name);
+const PathScene& pathScene(const std::string& name);
 
 }  // namespace ulam

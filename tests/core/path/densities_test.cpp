@@ -19,7 +19,7 @@ const std::vector<TechniqueSet> kSets = {{},
 }  // namespace
 
 TEST_CASE("the weights of all techniques of a path add up to 1 and follow their heuristic") {
-    for (const NamedScene& named : pathScenes()) {
+    for (const PathScene& named : pathScenes()) {
         INFO(named.name);
         const Scene scene = buildScene(named.dictionary);
         BidirectionalSampler sampler = samplerFor(scene);
@@ -56,7 +56,7 @@ TEST_CASE("the weights of all techniques of a path add up to 1 and follow their 
 }
 
 TEST_CASE("densities and contribution of a connection are those of its path") {
-    for (const NamedScene& named : pathScenes()) {
+    for (const PathScene& named : pathScenes()) {
         INFO(named.name);
         const Scene scene = buildScene(named.dictionary);
         BidirectionalSampler sampler = samplerFor(scene);

@@ -9,7 +9,7 @@ using namespace ulam;
 
 TEST_CASE("numbers found for a path by any of its techniques make it again") {
     constexpr int kSamples = 3000;
-    for (const NamedScene& named : pathScenes()) {
+    for (const PathScene& named : pathScenes()) {
         INFO(named.name);
         const Scene scene = buildScene(named.dictionary);
         BidirectionalSampler sampler = samplerFor(scene);

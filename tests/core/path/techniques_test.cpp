@@ -75,7 +75,7 @@ constexpr int kFewest = 400;
 TEST_CASE("all techniques agree on every kind of path") {
     constexpr int kSamples = 150'000;
     Comparisons comparisons;
-    for (const NamedScene& named : pathScenes()) {
+    for (const PathScene& named : pathScenes()) {
         const Scene scene = buildScene(named.dictionary);
         BidirectionalSampler sampler = samplerFor(scene);
         std::map<std::string, std::map<int, Moments>> kinds;
@@ -102,7 +102,7 @@ TEST_CASE("all sets of techniques and both heuristics agree on every kind of pat
     const std::vector<TechniqueSet> sets = {
         {}, {.connect = false, .lightImage = false}, {.nextEvent = false, .lightImage = false}, {.hitLight = false}};
     Comparisons comparisons;
-    for (const NamedScene& named : pathScenes()) {
+    for (const PathScene& named : pathScenes()) {
         const Scene scene = buildScene(named.dictionary);
         std::vector<std::map<std::string, Moments>> estimates;
         for (const Heuristic heuristic : {Heuristic::Balance, Heuristic::Power})

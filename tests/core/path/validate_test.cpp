@@ -7,7 +7,7 @@
 using namespace ulam;
 
 TEST_CASE("the validator accepts every path of bidirectional path tracing") {
-    for (const NamedScene& named : pathScenes()) {
+    for (const PathScene& named : pathScenes()) {
         INFO(named.name);
         const Scene scene = buildScene(named.dictionary);
         BidirectionalSampler sampler = samplerFor(scene);

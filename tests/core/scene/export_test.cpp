@@ -274,7 +274,7 @@ TEST_CASE("export: read back, a scene gives the same image to the last bit") {
         return render(description.build(film), *sampler, options).image;
     };
     const SceneFolder files("round_trip");
-    for (const NamedScene& named : pathScenes()) {
+    for (const PathScene& named : pathScenes()) {
         const SceneDescription description = describeScene(named.dictionary);
         const Image original = imageOf(description);
         for (const auto& [version, write] : {std::pair{std::string("3"), &exportMitsuba3}, {"0.6", &exportMitsuba06}}) {

@@ -35,11 +35,12 @@ Mesh wave() {
 Json step(const char* type, const Json& value) { return {{"type", type}, {"value", value}}; }
 Json turn(const Json& axis, double angle) { return {{"type", "rotate"}, {"axis", axis}, {"angle", angle}}; }
 
-const Json kShift = {step("translate", {0.5, -0.25, 2})};
+// Braces around one value alone mean a list to some compilers, and that value to others.
+const Json kShift = Json::array({step("translate", {0.5, -0.25, 2})});
 const Json kTurned = {turn({1, 2, 3}, 50), step("scale", 1.7), step("translate", {0.5, -0.3, 2})};
 const Json kStretched = {step("scale", {2, 0.5, 1.2}), turn({1, -1, 0.3}, 110), step("translate", {-1, 0.3, 0.6})};
 const Json kMirrored = {step("scale", {1, -1.5, 0.8}), turn({0, 1, 1}, 25)};
-const Json kSheared = {step("matrix", {1, 0.5, 0, 1, 0, 1, -0.4, 0, 0.3, 0, 1, 0.5, 0, 0, 0, 1})};
+const Json kSheared = Json::array({step("matrix", {1, 0.5, 0, 1, 0, 1, -0.4, 0, 0.3, 0, 1, 0.5, 0, 0, 0, 1})});
 
 /// The same shapes as an instance of a group and written out, in the order in which an instance has them.
 struct Twins {
@@ -50,9 +51,9 @@ struct Twins {
 
     Scene load(const Json& toWorld, bool round, bool asInstance) {
         folder.write("wave.ply", plyBytes(wave()));
-        Json members = {{"wave", {{"type", "ply"}, {"filename", "wave.ply"}, {"to_world", {turn({0, 1, 0}, 20)}}, {"bsdf", {{"type", "diffuse"}, {"reflectance", {0.7, 0.4, 0.2}}}}}},
+        Json members = {{"wave", {{"type", "ply"}, {"filename", "wave.ply"}, {"to_world", Json::array({turn({0, 1, 0}, 20)})}, {"bsdf", {{"type", "diffuse"}, {"reflectance", {0.7, 0.4, 0.2}}}}}},
                         {"box", {{"type", "cube"}, {"to_world", {step("scale", {0.3, 0.2, 0.4}), step("translate", {0.2, 0.4, 1})}}}}};
-        members["rectangle"] = {{"type", "rectangle"}, {"to_world", {step("translate", {0.1, 0.2, -0.8})}}};
+        members["rectangle"] = {{"type", "rectangle"}, {"to_world", Json::array({step("translate", {0.1, 0.2, -0.8})})}};
         members["disk"] = {{"type", "disk"}, {"to_world", {step("scale", {0.5, 0.8, 1}), step("translate", {-1.2, 0.2, 0.8})}}};
         if (round) {
             members["ball"] = {{"type", "sphere"}, {"center", {1.2, 0, 0.5}}, {"radius", 0.4}};

@@ -78,7 +78,7 @@ TEST_CASE("the counter counts") {
 }
 
 TEST_CASE("no sampler allocates memory in its loop") {
-    for (const NamedScene& named : pathScenes()) {
+    for (const PathScene& named : pathScenes()) {
         const Scene scene = buildScene(named.dictionary);
         const int chains = 20, bootstrap = 2000;
         for (const Json& sampler :
