@@ -87,6 +87,10 @@ std::string sha256(std::string_view bytes) {
     return text;
 }
 
+uint64_t hash64(std::string_view text) {
+    return std::stoull(sha256(text).substr(0, 16), nullptr, 16);
+}
+
 std::string sha256OfFile(const std::string& path) {
     return sha256(readFile(path));
 }

@@ -26,6 +26,8 @@ private:
 
 /// 64 lower-case hexadecimal digits.
 std::string sha256(std::string_view bytes);
+/// The first 64 bits, for streams of random numbers that a text names.
+uint64_t hash64(std::string_view text);
 /// Of a file's content. Throws ExitCode::InputMissing where it cannot be read.
 std::string sha256OfFile(const std::string& path);
 

@@ -17,10 +17,6 @@ namespace fs = std::filesystem;
 /// References do not depend on an experiment's seed, so that experiments can share them.
 constexpr std::uint64_t kReferenceSeed = 0x7265666572656e63;
 
-std::uint64_t hash64(const std::string& text) {
-    return std::stoull(sha256(text).substr(0, 16), nullptr, 16);
-}
-
 std::string sweptOrigin(const SweepValue& value) {
     return fmt::format("sweep {}={}", value.path, value.value.dump());
 }

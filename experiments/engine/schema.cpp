@@ -3,6 +3,7 @@
 #include "core/image/metrics.h"
 #include "core/scene/plugins.h"
 #include "experiments/engine/experiment.h"
+#include "experiments/engine/sweep_values.h"
 
 namespace ulam {
 namespace {
@@ -34,10 +35,41 @@ Json reference(const char* definition) {
     return {{"$ref", std::string("#/definitions/") + definition}};
 }
 
+/// A list, or a range with equal steps or random draws (sweep_values.h).
+Json sweepValuesSchema() {
+    std::vector<Json> forms{{{"type", "array"}, {"minItems", 1}, {"description", "each of these values"}}};
+    for (const bool logarithmic : {false, true})
+        for (const bool drawn : {false, true}) {
+            const char *scale = logarithmic ? "log" : "linear", *number = drawn ? "draws" : "steps";
+            Json end = {{"type", "number"}};
+            if (logarithmic) end["exclusiveMinimum"] = 0;
+            forms.push_back({{"type", "object"},
+                             {"properties",
+                              {{scale, {{"type", "array"}, {"items", end}, {"minItems", 2}, {"maxItems", 2}, {"description", "first and last value"}}},
+                               {number, {{"type", "integer"}, {"minimum", drawn ? 1 : 2}, {"maximum", kMostSweepValues}, {"description", drawn ? "how many random values" : "how many values, the ends included"}}}}},
+                             {"required", {scale, number}},
+                             {"additionalProperties", false}});
+        }
+    return {{"anyOf", forms}};
+}
+
+/// Of the points that are run (sweep_filter.h).
+Json conditions() {
+    const Json text = {{"type", "string"}}, single = {{"type", {"number", "string", "boolean"}}};
+    const Json path = {{"type", "object"}, {"properties", {{"path", text}}}, {"required", Json::array({"path"})}, {"additionalProperties", false}};
+    const auto condition = [&](Json comparison, Json value) -> Json {
+        return {{"type", "array"}, {"items", Json::array({text, std::move(comparison), std::move(value)})}, {"minItems", 3}, {"maxItems", 3}};
+    };
+    const Json order = {{"enum", {"<", "<=", ">", ">=", "==", "!="}}}, among = {{"const", "in"}};
+    return {{"type", "array"},
+            {"description", "conditions [path, comparison, value] that a point must meet to be run"},
+            {"items", anyOf({condition(order, anyOf({single, path})), condition(among, {{"type", "array"}, {"items", single}, {"minItems", 1}})})}};
+}
+
 }  // namespace
 
 Json experimentSchema() {
-    const Json text = {{"type", "string"}}, number = {{"type", "number"}};
+    const Json text = {{"type", "string"}};
 
     Json samplers = Json::array();
     Json samplerNames = Json::array();
@@ -61,15 +93,10 @@ Json experimentSchema() {
     refine(made, "budget", reference("budget"));
     definitions["reference"] = anyOf({text, made});
 
+    definitions["sweepValues"] = sweepValuesSchema();
+
     Json metricNames = Json::array();
     for (const Metric& metric : metrics()) metricNames.push_back(metric.name);
-    const Json range = {{"type", "object"},
-                        {"properties",
-                         {{"log", {{"type", "array"}, {"items", number}, {"minItems", 2}, {"maxItems", 2}}},
-                          {"steps", {{"type", "integer"}, {"minimum", 2}}}}},
-                        {"required", {"log", "steps"}},
-                        {"additionalProperties", false}};
-    const Json values = anyOf({{{"type", "array"}, {"minItems", 1}}, range});
 
     Json schema = {{"$schema", "http://json-schema.org/draft-07/schema#"}, {"title", "Ulam experiment"}};
     schema.update(jsonSchema(parameterInfo<ExperimentParameters>()));
@@ -82,7 +109,9 @@ Json experimentSchema() {
            {{"type", "array"}, {"items", {{"enum", metricNames}}}, {"minItems", 1}, {"uniqueItems", true}});
     refine(schema, "reference", anyOf({reference("reference"), membersLike(reference("reference"))}));
     refine(schema, "sweep",
-           {{"type", "object"}, {"properties", {{"zip", membersLike(values)}}}, {"additionalProperties", values}});
+           {{"type", "object"},
+            {"properties", {{"zip", membersLike(reference("sweepValues"))}, {"where", conditions()}}},
+            {"additionalProperties", reference("sweepValues")}});
     schema["required"] = Json::array({"samplers", "budget", "reference"});
     schema["definitions"] = definitions;
     return schema;

@@ -5,49 +5,24 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <cmath>
 #include <map>
 #include <set>
 #include <string_view>
 
+#include "core/base/sha256.h"
 #include "core/config/suggest.h"
+#include "experiments/engine/sweep_filter.h"
+#include "experiments/engine/sweep_values.h"
 
 namespace ulam {
 namespace {
 
 constexpr std::size_t kMostPoints = 100'000;
-/// Beyond 2^53 a double no longer tells neighbouring whole numbers apart.
-constexpr double kLargestWhole = 9007199254740992.0;
 /// What a run has once: a point cannot have its own. Reference, replicates and all that cells are made of can differ.
 constexpr std::array<std::string_view, 5> kWholeRun{"$schema", "name", "baseline", "seed", "metrics"};
 
 /// Points that exclude each other: the values of one key, or the pairs of a zip.
 using Axis = std::vector<SweepPoint>;
-
-std::vector<Json> logarithmic(const JsonNode& node) {
-    node.allowOnly("key of a range", {"log", "steps"});
-    const std::vector<double> ends = node.at("log").numbers(2);
-    const auto steps = node.at("steps").integer();
-    if (ends[0] <= 0 || ends[1] <= 0) node.at("log").expected("two numbers above 0");
-    if (steps < 2 || steps > 1000) node.at("steps").expected("a whole number from 2 to 1000");
-    const auto isWhole = [](double x) { return x == std::floor(x) && x <= kLargestWhole; };
-    const bool whole = isWhole(ends[0]) && isWhole(ends[1]);
-    std::vector<Json> values;
-    for (std::int64_t i = 0; i < steps; ++i) {
-        // Exact at both ends; the ratio of the ends may be infinite.
-        const double t = double(i) / double(steps - 1), x = std::pow(ends[0], 1 - t) * std::pow(ends[1], t);
-        Json value = whole ? Json(std::llround(x)) : Json(x);
-        if (values.empty() || values.back() != value) values.push_back(std::move(value));
-    }
-    return values;
-}
-
-std::vector<Json> valuesOf(const JsonNode& node) {
-    if (node.isObject()) return logarithmic(node);
-    if (!node.isArray() || node.size() == 0)
-        node.expected("a list of values, or {\"log\": [first, last], \"steps\": n}");
-    return std::vector<Json>(node.json().begin(), node.json().end());
-}
 
 /// A key of a sweep with the node of its values.
 using Key = std::pair<std::string, JsonNode>;
@@ -56,8 +31,7 @@ using Key = std::pair<std::string, JsonNode>;
 std::vector<Key> keysOf(const JsonNode& sweep) {
     std::vector<Key> keys;
     for (const auto& [path, node] : sweep.members()) {
-        if (path == "where")
-            node.fail("\"where\" is not supported in a sweep", "lists, {\"log\": …, \"steps\": …} and \"zip\" are");
+        if (path == "where") continue;
         const std::vector<Key> own = path == "zip" ? node.members() : std::vector<Key>{{path, node}};
         keys.insert(keys.end(), own.begin(), own.end());
     }
@@ -135,10 +109,25 @@ std::string shortName(const std::string& path, const std::vector<std::string>& p
     return same > 1 ? path : last(path);
 }
 
-Axis zipAxis(const JsonNode& node, const std::vector<std::string>& paths) {
+/// The values of a key, where those of a range are drawn by the experiment's seed.
+std::vector<Json> valuesOf(const JsonNode& node, const std::string& path, const JsonNode& experiment) {
+    const auto seed = experiment.find("seed");
+    return sweepValues(node, hash64(fmt::format("{} {}", seed ? seed->json().dump() : "", path)));
+}
+
+/// Of a range, steps that round to the same number and repeated draws are one point of a grid.
+std::vector<Json> distinct(const JsonNode& node, std::vector<Json> values) {
+    if (!node.isObject()) return values;
+    std::vector<Json> once;
+    for (Json& value : values)
+        if (std::find(once.begin(), once.end(), value) == once.end()) once.push_back(std::move(value));
+    return once;
+}
+
+Axis zipAxis(const JsonNode& node, const std::vector<std::string>& paths, const JsonNode& experiment) {
     Axis axis;
     for (const auto& [path, values] : node.members()) {
-        const Axis column = makeAxis(path, valuesOf(values), shortName(path, paths));
+        const Axis column = makeAxis(path, valuesOf(values, path, experiment), shortName(path, paths));
         if (axis.empty()) axis.resize(column.size());
         if (column.size() != axis.size())
             values.expected(fmt::format("{} values as in the first list of the zip", axis.size()));
@@ -176,7 +165,9 @@ std::vector<SweepPoint> expandSweep(const JsonNode& sweep, const JsonNode& exper
     std::vector<Axis> axes;
     std::size_t count = 1;
     for (const auto& [path, node] : sweep.members()) {
-        axes.push_back(path == "zip" ? zipAxis(node, paths) : makeAxis(path, valuesOf(node), shortName(path, paths)));
+        if (path == "where") continue;
+        axes.push_back(path == "zip" ? zipAxis(node, paths, experiment)
+                                     : makeAxis(path, distinct(node, valuesOf(node, path, experiment)), shortName(path, paths)));
         refuseRepeated(axes.back(), node);
         // Before any point is made, and without computing a product that could overflow.
         if (axes.back().size() > kMostPoints / count)
@@ -193,6 +184,14 @@ std::vector<SweepPoint> expandSweep(const JsonNode& sweep, const JsonNode& exper
         }
         points = std::move(next);
     }
+    const SweepFilter filter(sweep.find("where"));
+    if (filter.empty()) return points;
+    std::erase_if(points, [&](const SweepPoint& point) {
+        Json changed = experiment.json();
+        for (const SweepValue& value : point) setValueByPath(changed, value.path, value.value);
+        return !filter.passes(changed);
+    });
+    if (points.empty()) sweep.at("where").fail("no point of the sweep meets the conditions");
     return points;
 }
 

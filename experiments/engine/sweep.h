@@ -18,10 +18,10 @@ struct SweepValue {
 /// One point of the grid; empty for an experiment without a sweep.
 using SweepPoint = std::vector<SweepValue>;
 
-/// All points, the last key running fastest. A key's values are a list, or {"log": [first, last], "steps": n}: equal
-/// ratios, whole numbers where both ends are. {"zip": {key: list, …}} pairs lists of equal length. Fails with
-/// InvalidConfig, also at keys that belong to the whole run, at keys that overwrite each other, and at equal points;
-/// `experiment` is what the paths lead into.
+/// All points, the last key running fastest. A key's values: sweep_values.h. {"zip": {key: values, …}} pairs values,
+/// equally many of each key. "where" leaves points out: sweep_filter.h. Fails with InvalidConfig, also at keys that
+/// belong to the whole run, at keys that overwrite each other, and at equal points; `experiment` is what the paths lead
+/// into.
 std::vector<SweepPoint> expandSweep(const JsonNode& sweep, const JsonNode& experiment);
 
 /// Does a value touch a cell of this scene and sampler? Keys of other scenes and samplers do not.

@@ -1,5 +1,6 @@
 #include "experiments/engine/sweep.h"
 
+#include <numeric>
 #include <set>
 
 #include "tests/experiments/engine/tiny.h"
@@ -45,6 +46,86 @@ TEST_CASE("a logarithmic range has equal ratios and exact ends", "[sweep]") {
     CHECK(large[3][0].value == 1e30);
     const auto wide = expand({{"budget.time", {{"log", {1e-200, 1e200}}, {"steps", 3}}}});
     CHECK(wide[1][0].value.get<double>() == Approx(1));
+}
+
+TEST_CASE("a linear range has equal differences and exact ends", "[sweep]") {
+    const auto real = expand({{"budget.time", {{"linear", {0.1, 0.7}}, {"steps", 4}}}});
+    REQUIRE(real.size() == 4);
+    CHECK(real[0][0].value == 0.1);
+    CHECK(real[1][0].value.get<double>() == Approx(0.3).epsilon(1e-12));
+    CHECK(real[3][0].value == 0.7);
+    const auto down = expand({{"max_depth", {{"linear", {8, 2}}, {"steps", 3}}}});
+    REQUIRE(down.size() == 3);
+    CHECK(down[1][0].value == 5);
+    CHECK(down[1][0].value.is_number_integer());
+    // Steps that round to the same number are one.
+    CHECK(expand({{"max_depth", {{"linear", {1, 3}}, {"steps", 9}}}}).size() == 3);
+}
+
+TEST_CASE("random draws are uniform on their scale and belong to the seed and the key", "[sweep]") {
+    const auto values = [](const char* key, const Json& range, uint64_t seed = 1) {
+        Json experiment = tinyExperiment();
+        experiment["seed"] = seed;
+        std::vector<double> all;
+        for (const SweepPoint& point : expandSweep(JsonNode(Json{{key, range}}), JsonNode(experiment))) all.push_back(point[0].value.get<double>());
+        return all;
+    };
+    constexpr int kDraws = 1000;
+    const auto linear = values("budget.time", {{"linear", {2.5, 4.5}}, {"draws", kDraws}});
+    REQUIRE(linear.size() == kDraws);
+    CHECK(std::ranges::min(linear) >= 2.5);
+    CHECK(std::ranges::max(linear) <= 4.5);
+    const auto mean = [](const std::vector<double>& x) { return std::accumulate(x.begin(), x.end(), 0.0) / double(x.size()); };
+    // Four standard errors of a uniform number's mean: false alarms of a fixed seed would stay for ever, once in 15 000.
+    CHECK(mean(linear) == Approx(3.5).margin(4 * 2 / std::sqrt(12.0 * kDraws)));
+    auto logarithmic = values("budget.time", {{"log", {0.01, 100.5}}, {"draws", kDraws}});
+    for (double& x : logarithmic) x = std::log(x / 0.01) / std::log(100.5 / 0.01);
+    CHECK(mean(logarithmic) == Approx(0.5).margin(4 / std::sqrt(12.0 * kDraws)));
+
+    const Json five = {{"log", {0.5, 8}}, {"draws", 5}}, three = {{"log", {0.5, 8}}, {"draws", 3}};
+    const auto first = values("budget.time", five), fewer = values("budget.time", three);
+    CHECK(first == values("budget.time", five));
+    CHECK(std::equal(fewer.begin(), fewer.end(), first.begin()));
+    CHECK(first != values("budget.spp", five));
+    CHECK(first != values("budget.time", five, 2));
+
+    // Whole numbers: both ends come, a grid has each once, a zip has as many as were asked for.
+    std::vector<double> dice = values("max_depth", {{"linear", {6, 1}}, {"draws", 200}});
+    std::ranges::sort(dice);
+    CHECK(dice == std::vector<double>{1, 2, 3, 4, 5, 6});
+    CHECK(expand({{"zip", {{"max_depth", {{"linear", {1, 6}}, {"draws", 20}}}, {"budget.time", {{"log", {1.5, 2.5}}, {"draws", 20}}}}}}).size() == 20);
+}
+
+TEST_CASE("conditions leave points out", "[sweep]") {
+    const auto count = [](const Json& where) {
+        return expand({{"max_depth", {2, 3, 4}}, {"budget.spp", {2, 3, 4}}, {"where", where}}).size();
+    };
+    const auto one = [](const char* path, const char* comparison, const Json& value) { return Json::array({Json::array({path, comparison, value})}); };
+    CHECK(count(one("max_depth", "<", 4)) == 6);
+    CHECK(count(one("max_depth", "<=", 4)) == 9);
+    CHECK(count(one("max_depth", ">", 3)) == 3);
+    CHECK(count(one("max_depth", ">=", 3.5)) == 3);
+    CHECK(count(one("max_depth", "==", 3.0)) == 3);
+    CHECK(count(one("max_depth", "!=", 3)) == 6);
+    CHECK(count(one("max_depth", "in", {2, 4, 17})) == 6);
+    CHECK(count(one("max_depth", ">", {{"path", "budget.spp"}})) == 3);
+    CHECK(count(Json::array({Json::array({"max_depth", ">", 2}), Json::array({"budget.spp", "==", {{"path", "max_depth"}}})})) == 2);
+    CHECK(count(one("samplers.path.type", "==", "path")) == 9);
+    CHECK(count(one("samplers.path.type", "in", {"bdpt", "path"})) == 9);
+    CHECK(count(Json::array()) == 9);
+
+    const auto message = [&](const Json& where) { return errorOf([&] { count(where); }).second; };
+    CHECK(contains(message(one("max_depth", ">", 9)), "no point of the sweep"));
+    CHECK(contains(message(one("max_dept", ">", 1)), "no value at \"max_dept\""));
+    CHECK(contains(message(one("samplers.path", "==", "path")), "no single value"));
+    CHECK(contains(message(one("max_depth", "=>", 1)), "comparison"));
+    CHECK(contains(message(one("max_depth", ">", "much")), "cannot compare"));
+    CHECK(contains(message(one("samplers.path.type", "<", "path")), "cannot compare"));
+    CHECK(contains(message(one("max_depth", "in", 3)), "a list of values"));
+    CHECK(contains(message(one("max_depth", "==", {3})), "expected a number"));
+    CHECK(contains(message(one("max_depth", "==", {{"pth", "x"}})), "pth"));
+    CHECK(contains(message("max_depth > 3"), "array"));
+    CHECK(contains(message(Json::array({"max_depth", ">", 3})), "a condition"));
 }
 
 TEST_CASE("zipped keys go together", "[sweep]") {
@@ -109,11 +190,13 @@ TEST_CASE("a grid of too many points is refused before it is made", "[sweep]") {
 
 TEST_CASE("what is no sweep is refused", "[sweep]") {
     CHECK(contains(errorOf([] { expand({{"samplers.pth.rr_depth", {3}}}); }).second, "\"path\""));
-    CHECK(contains(errorOf([] { expand({{"where", "chains > 3"}}); }).second, "not supported"));
     CHECK(errorOf([] { expand({{"max_depth", Json::array()}}); }).first == ExitCode::InvalidConfig);
     CHECK(errorOf([] { expand({{"max_depth", {{"log", {0, 8}}, {"steps", 3}}}}); }).first == ExitCode::InvalidConfig);
     CHECK(errorOf([] { expand({{"max_depth", {{"log", {1, 8}}, {"steps", 1}}}}); }).first == ExitCode::InvalidConfig);
     CHECK(errorOf([] { expand({{"max_depth", {{"log", {1, 8}}, {"step", 3}}}}); }).first == ExitCode::InvalidConfig);
+    CHECK(errorOf([] { expand({{"max_depth", {{"log", {1, 8}}, {"steps", 3}, {"draws", 3}}}}); }).first == ExitCode::InvalidConfig);
+    CHECK(errorOf([] { expand({{"max_depth", {{"log", {1, 8}}, {"linear", {1, 8}}, {"steps", 3}}}}); }).first == ExitCode::InvalidConfig);
+    CHECK(errorOf([] { expand({{"max_depth", {{"linear", {1, 8}}, {"draws", 1001}}}}); }).first == ExitCode::InvalidConfig);
     CHECK(errorOf([] { expand({{"sweep.seed", {1, 2}}}); }).first == ExitCode::InvalidConfig);
 }
 
