@@ -112,7 +112,9 @@ private:
         const double deadline = timeLimit() * fraction;
         if (!b.rays) return doUnits(limit, deadline);
         const uint64_t round = kChunksPerRayRound * run_->chunk();
-        while (units_ < limit && workSeconds() < deadline && double(run_->rays()) < *b.rays * fraction && !stopped_)
+        // A session that ended inside a round has done a part of it: the round comes first.
+        const auto raysAreLeft = [&] { return units_ % round != 0 || double(run_->rays()) < *b.rays * fraction; };
+        while (units_ < limit && workSeconds() < deadline && !stopped_ && raysAreLeft())
             doUnits(std::min(limit, (units_ / round + 1) * round), deadline);
     }
 

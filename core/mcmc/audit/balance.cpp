@@ -72,9 +72,11 @@ private:
         const double selectX = std::log(here.suitability[0] / here.z),
                      selectY = std::log(there.suitability[0] / there.z);
         const double ratio = logY - logX + *reverse - *forward + p.logJacobian + selectY - selectX;
-        const double alpha = std::log(info.acceptance);
-        residual(difference(alpha, std::min(0.0, ratio)),
-                 [&] { return fmt::format("log α is {}, by the balance {}", alpha, std::min(0.0, ratio)); });
+        // Where α is below the smallest normal number, few of its digits are left to take a log of.
+        constexpr double kSmallest = std::numeric_limits<double>::min();
+        const double expected = std::min(0.0, ratio);
+        const double alpha = info.acceptance < kSmallest && std::exp(expected) < kSmallest ? expected : std::log(info.acceptance);
+        residual(difference(alpha, expected), [&] { return fmt::format("log α is {}, by the balance {}", alpha, expected); });
         if (!(there.suitability[0] > 0)) return;
 
         Proposal back;
