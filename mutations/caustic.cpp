@@ -38,7 +38,7 @@ public:
         PathEdit edit(x, s, k + 1, k + 1 - s, context, p.y);
         edit.takeFromCamera(lens);
         p.y.path[s].lobe = Lobe::Smooth;
-        p.reject = edit.growFromLightAlong(direction_.sample(x.factors.edge[s].direction, u));
+        p.reject = edit.growFromLightAlong(direction_.sample(context.tracing.directionOfRay(x.path[s], x.path[s + 1]), u));
         for (int i = s + 1; i < k - 1 && p.reject == Reject::None; ++i) p.reject = edit.followFromLight(x.path[i].lobe);
         if (p.reject != Reject::None || (p.reject = edit.join()) != Reject::None) return p;
         p.logForward = *logDensity(x, p.y, context);
@@ -50,7 +50,9 @@ public:
     std::optional<double> logDensity(const Sample& from, const Sample& to, StepContext& context) const override {
         const int k = to.path.length(), s = start(to.path);
         const PathFactors& f = to.factors;
-        double sum = std::log(f.edge[s].toAreaB(direction_.pdf(from.factors.edge[s].direction, f.edge[s].direction)) *
+        const Tracing& tracing = context.tracing;
+        const Vec3f before = tracing.directionOfRay(from.path[s], from.path[s + 1]), after = tracing.directionOfRay(to.path[s], to.path[s + 1]);
+        double sum = std::log(f.edge[s].toAreaB(direction_.pdf(before, after)) *
                               AperturePerturbation::pdf(*context.scene().sensor, from.path.camera(), to.path.camera()));
         for (int i = s + 2; i < k; ++i) sum += logFollowedFromLight(context.scene(), to.path, f, i);
         return sum;

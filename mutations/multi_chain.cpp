@@ -27,7 +27,7 @@ public:
     double suitability(const Sample& x) const override { return end(x.path) >= 0; }
     Proposal propose(const Sample& x, StepContext& context) const override { return perturbation_.propose(x, end(x.path), context); }
     std::optional<double> logDensity(const Sample& from, const Sample& to, StepContext& context) const override {
-        return perturbation_.logDensity(context.scene(), from, to, end(to.path));
+        return perturbation_.logDensity(context.tracing, from, to, end(to.path));
     }
 
 private:

@@ -36,7 +36,7 @@ Proposal LensPerturbation::propose(const Sample& x, int m, StepContext& context)
         if (isDelta(x.path[i].lobe)) {
             p.reject = edit.followFromCamera(x.path[i].lobe);
         } else {
-            const Vec3f w = -x.factors.edge[i - 1].direction;
+            const Vec3f w = context.tracing.directionOfRay(x.path[i], x.path[i - 1]);
             p.y.path[i].lobe = Lobe::Smooth;
             p.reject = edit.growFromCameraAlong(direction_.sample(w, context.random.nextBlock()));
         }
@@ -44,8 +44,8 @@ Proposal LensPerturbation::propose(const Sample& x, int m, StepContext& context)
     }
     if ((p.reject = edit.join()) != Reject::None) return p;
     const auto atX = response(scene, x), atY = response(scene, p.y);
-    p.logForward = logDensity(scene, x, atX, p.y, atY, m);
-    p.logReverse = logDensity(scene, p.y, atY, x, atX, m);
+    p.logForward = logDensity(context.tracing, x, atX, p.y, atY, m);
+    p.logReverse = logDensity(context.tracing, p.y, atY, x, atX, m);
     rejectIfRoundedAway(p);
     return p;
 }
@@ -54,13 +54,14 @@ Perspective::Response LensPerturbation::response(const Scene& scene, const Sampl
     return scene.sensor->respond(s.path.camera(), -s.factors.edge[s.path.length() - 1].direction);
 }
 
-double LensPerturbation::logDensity(const Scene& scene, const Sample& from, const Sample& to, int m) const {
-    return logDensity(scene, from, response(scene, from), to, response(scene, to), m);
+double LensPerturbation::logDensity(const Tracing& tracing, const Sample& from, const Sample& to, int m) const {
+    return logDensity(tracing, from, response(tracing.scene(), from), to, response(tracing.scene(), to), m);
 }
 
-double LensPerturbation::logDensity(const Scene& scene, const Sample& from, const Perspective::Response& a, const Sample& to,
+double LensPerturbation::logDensity(const Tracing& tracing, const Sample& from, const Perspective::Response& a, const Sample& to,
                                     const Perspective::Response& b, int m) const {
     const int k = to.path.length();
+    const Scene& scene = tracing.scene();
     const Perspective& sensor = *scene.sensor;
     if (!(a.pdf > 0 && b.pdf > 0)) return -std::numeric_limits<double>::infinity();
     // fromCamera(k−1) is the density of a uniform raster position, 1 / window area per pixel².
@@ -70,7 +71,7 @@ double LensPerturbation::logDensity(const Scene& scene, const Sample& from, cons
         if (isDelta(to.path[i + 1].lobe)) {
             sum += logFollowedFromCamera(scene, to.path, to.factors, i);
         } else {
-            const double pdf = direction_.pdf(from.factors.edge[i].direction, to.factors.edge[i].direction);
+            const double pdf = direction_.pdf(tracing.directionOfRay(from.path[i + 1], from.path[i]), tracing.directionOfRay(to.path[i + 1], to.path[i]));
             sum += std::log(to.factors.edge[i].toAreaA(pdf));
         }
     }

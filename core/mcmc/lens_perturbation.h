@@ -19,11 +19,11 @@ public:
 
     Proposal propose(const Sample& x, int m, StepContext& context) const;
     /// log q(from → to) for both ending at m.
-    double logDensity(const Scene& scene, const Sample& from, const Sample& to, int m) const;
+    double logDensity(const Tracing& tracing, const Sample& from, const Sample& to, int m) const;
 
 private:
     static Perspective::Response response(const Scene& scene, const Sample& s);
-    double logDensity(const Scene& scene, const Sample& from, const Perspective::Response& a, const Sample& to, const Perspective::Response& b,
+    double logDensity(const Tracing& tracing, const Sample& from, const Perspective::Response& a, const Sample& to, const Perspective::Response& b,
                       int m) const;
 
     RasterPerturbation raster_;

@@ -22,6 +22,13 @@ public:
     /// The vertex that a ray from v along w meets; leaving the scene, the environment's vertex if there is one.
     bool next(const Vertex& v, const Vec3f& w, Vertex& hit) { return nextFrom(offset(v, w), w, hit); }
 
+    /// The direction of the ray from `from` that meets `to`. It starts a little off the surface, so that the direction
+    /// between the places of vertices that are close together differs from it, always to the same side.
+    Vec3f directionOfRay(const Vertex& from, const Vertex& to) const {
+        if (to.atInfinity()) return to.position;
+        return normalize(to.position - offset(from, to.position - from.position));
+    }
+
     bool nextFrom(const Vec3f& origin, const Vec3f& w, Vertex& out) {
         ++rays_;
         Hit hit;

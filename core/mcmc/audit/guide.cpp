@@ -28,7 +28,7 @@ ProposalClass::ProposalClass(const Path& x, const Path& y) {
 }
 
 PathGuide::PathGuide(const AuditScene& scene, const Sample& x, const ProposalClass& c, const std::vector<Sample>& pilot)
-    : scene_(scene), x_(x), class_(c), pattern_(pilot.front().path) {
+    : scene_(scene), tracing_(scene.scene), x_(x), class_(c), pattern_(pilot.front().path) {
     const int k = pattern_.length(), shift = k - x.path.length(), l = c.kept;
     // The joining edge: as much as possible is grown from the camera.
     for (int n = 0; n <= c.grown() && fromLight_ < 0; ++n) {
@@ -41,10 +41,11 @@ PathGuide::PathGuide(const AuditScene& scene, const Sample& x, const ProposalCla
         bool measured = end || g.raster;
         if (!measured && g.source >= 0) {
             const Vertex& from = pattern_[g.source];
-            // Edges are counted from the end the walk comes from.
-            const int edge = std::min(g.vertex, g.source), old = g.camera ? edge - shift : edge;
-            measured = !(from.onSurface() && isDelta(from.lobe)) && !from.atInfinity() && old >= 0 && old < x.path.length();
-            if (measured) g.center = x.factors.edge[size_t(old)].direction * (g.camera ? -1.0f : 1.0f);
+            // Vertices are counted from the end the walk comes from.
+            const int source = g.camera ? g.source - shift : g.source, vertex = g.camera ? g.vertex - shift : g.vertex;
+            measured = !(from.onSurface() && isDelta(from.lobe)) && !from.atInfinity() && std::min(source, vertex) >= 0 &&
+                       std::max(source, vertex) <= x.path.length() && !x.path[source].atInfinity();
+            if (measured) g.center = tracing_.directionOfRay(x.path[source], x.path[vertex]);
         }
         if (measured) {
             std::vector<double> lengths;
@@ -106,8 +107,7 @@ Reject PathGuide::grow(const Growth& g, PathEdit& edit, Random& random, Path& pa
 double PathGuide::lengthOf(const Growth& g, const Sample& y) const {
     if (g.vertex == y.path.length()) return onLens(y);
     if (g.raster) return (y.splats[0].raster - x_.splats[0].raster).length();
-    const Edge& edge = y.factors.edge[size_t(std::min(g.vertex, g.source))];
-    return angleBetween(g.center, edge.direction * (g.camera ? -1.0f : 1.0f));
+    return angleBetween(g.center, tracing_.directionOfRay(y.path[g.source], y.path[g.vertex]));
 }
 
 bool PathGuide::covers(const Sample& y) const {

@@ -56,6 +56,7 @@ private:
     double onLens(const Sample& y) const;
 
     const AuditScene& scene_;
+    Tracing tracing_;
     const Sample& x_;
     ProposalClass class_;
     Path pattern_;  ///< a path of the class
