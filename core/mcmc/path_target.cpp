@@ -44,7 +44,7 @@ public:
         if (s < 0) return -std::numeric_limits<double>::infinity();
         x.technique = {s, d.size - s};
         x.logDensity = d.log(s);
-        if (invertNumbers && !invertPath(scene_, limits(), x.technique, x.path, random, x.u)) return -std::numeric_limits<double>::infinity();
+        if (invertNumbers && !invertPath(tracing(), limits(), x.technique, x.path, random, x.u)) return -std::numeric_limits<double>::infinity();
         return std::log(c[size_t(s)]);
     }
 

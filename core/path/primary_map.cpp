@@ -32,8 +32,8 @@ double below(double q, Random& random) { return q * random(); }
 
 class Inversion {
 public:
-    Inversion(const Scene& scene, const PathLimits& limits, const Path& path, Random& random, PrimaryVector& u)
-        : scene_(scene), limits_(limits), path_(path), random_(random), u_(u) {}
+    Inversion(const Tracing& tracing, const PathLimits& limits, const Path& path, Random& random, PrimaryVector& u)
+        : tracing_(tracing), scene_(tracing.scene()), limits_(limits), path_(path), random_(random), u_(u) {}
 
     bool lightWalk(int s) {
         if (s < 1) return true;
@@ -41,7 +41,9 @@ public:
         if (s < 2) return true;
         Block block = random_.nextBlock();
         const uint32_t e = scene_.emitterAt(path_[0]);
-        dispatch(scene_.emitters[e], [&](const auto& emitter) { emitter.invertDirection(scene_.emission(e), path_[0], path_[1], block); });
+        Vertex origin = path_[0];
+        if (origin.onSurface()) origin.position = tracing_.rayOrigin(origin, path_[1].position - origin.position);
+        dispatch(scene_.emitters[e], [&](const auto& emitter) { emitter.invertDirection(scene_.emission(e), origin, path_[1], block); });
         u_.append(NumberStream::Light, block);
         for (int i = 1; i + 1 < s; ++i)
             if (!scattering(NumberStream::Light, i, i - 1, i + 1, i)) return false;
@@ -82,12 +84,13 @@ private:
         Block block = random_.nextBlock();
         const Vertex& v = path_[vertex];
         if (!v.onSurface()) return false;
-        if (!invertScattering(scene_, v, directionTo(v, path_[previous]), directionTo(v, path_[next]), block)) return false;
+        if (!invertScattering(scene_, v, directionTo(v, path_[previous]), tracing_.directionOfRay(v, path_[next]), block)) return false;
         block[3] = below(limits_.continuation(index, albedoAt(scene_, v)), random_);
         u_.append(stream, block);
         return true;
     }
 
+    const Tracing& tracing_;
     const Scene& scene_;
     const PathLimits& limits_;
     const Path& path_;
@@ -97,11 +100,11 @@ private:
 
 }  // namespace
 
-bool invertPath(const Scene& scene, const PathLimits& limits, Technique technique, const Path& path, Random& random, PrimaryVector& u) {
+bool invertPath(const Tracing& tracing, const PathLimits& limits, Technique technique, const Path& path, Random& random, PrimaryVector& u) {
     u.clear();
     const auto [s, t] = technique;
-    if (s > 0 && scene.emitterAt(path[0]) == kNone) return false;
-    Inversion inversion(scene, limits, path, random, u);
+    if (s > 0 && tracing.scene().emitterAt(path[0]) == kNone) return false;
+    Inversion inversion(tracing, limits, path, random, u);
     if (!inversion.cameraWalk(t)) return false;
     return s == 1 && t >= 2 ? inversion.nextEvent(t) : inversion.lightWalk(s);
 }

@@ -12,6 +12,6 @@ bool makePath(Tracing& tracing, const PathLimits& limits, Technique technique, P
 
 /// Numbers that make `path` by the technique; those that the path does not determine (a lobe's choice, Russian roulette)
 /// come from `random`. False where there are none.
-bool invertPath(const Scene& scene, const PathLimits& limits, Technique technique, const Path& path, Random& random, PrimaryVector& u);
+bool invertPath(const Tracing& tracing, const PathLimits& limits, Technique technique, const Path& path, Random& random, PrimaryVector& u);
 
 }  // namespace ulam

@@ -19,14 +19,21 @@ public:
     /// How far from its surface a ray starts: positions and directions of vertices are as good as that.
     float offsetLength() const { return offset_; }
 
-    /// The vertex that a ray from v along w meets; leaving the scene, the environment's vertex if there is one.
-    bool next(const Vertex& v, const Vec3f& w, Vertex& hit) { return nextFrom(offset(v, w), w, hit); }
+    /// Where a ray from v along w starts: off the surface along the geometric normal, by a few dozen units in the last
+    /// place of the scene's coordinates.
+    Vec3f rayOrigin(const Vertex& v, const Vec3f& w) const {
+        if (!v.onSurface()) return v.position;
+        return v.position + v.normal * (dot(v.normal, w) > 0 ? offset_ : -offset_);
+    }
 
-    /// The direction of the ray from `from` that meets `to`. It starts a little off the surface, so that the direction
-    /// between the places of vertices that are close together differs from it, always to the same side.
+    /// The vertex that a ray from v along w meets; leaving the scene, the environment's vertex if there is one.
+    bool next(const Vertex& v, const Vec3f& w, Vertex& hit) { return nextFrom(rayOrigin(v, w), w, hit); }
+
+    /// The direction of the ray from `from` that meets `to`, up to rounding. That between their places differs by what
+    /// rays start off the surface, always to the same side: steps measured by it drift.
     Vec3f directionOfRay(const Vertex& from, const Vertex& to) const {
         if (to.atInfinity()) return to.position;
-        return normalize(to.position - offset(from, to.position - from.position));
+        return normalize(to.position - rayOrigin(from, to.position - from.position));
     }
 
     bool nextFrom(const Vec3f& origin, const Vec3f& w, Vertex& out) {
@@ -48,19 +55,13 @@ public:
     /// V(a↔b). Asked in the order light, camera, so that the answer is a function of the pair.
     bool visible(const Vertex& a, const Vertex& b) {
         ++rays_;
-        if (a.atInfinity()) return !scene_->rays().occludedToInfinity(offset(b, a.position), a.position);
+        if (a.atInfinity()) return !scene_->rays().occludedToInfinity(rayOrigin(b, a.position), a.position);
         const Vec3f d = b.position - a.position;
-        const Vec3f from = offset(a, d), to = offset(b, -d);
+        const Vec3f from = rayOrigin(a, d), to = rayOrigin(b, -d);
         return !scene_->rays().occluded(from, to - from);
     }
 
 private:
-    /// Leaves the surface along the geometric normal, by a few dozen units in the last place of the scene's coordinates.
-    Vec3f offset(const Vertex& v, const Vec3f& w) const {
-        if (!v.onSurface()) return v.position;
-        return v.position + v.normal * (dot(v.normal, w) > 0 ? offset_ : -offset_);
-    }
-
     const Scene* scene_;
     float offset_;
     uint64_t rays_ = 0;
