@@ -142,6 +142,8 @@ Finding auditJacobian(const MutationCase& c) {
         take(finding, c, place, verdict.failures);
         finding.numbers[place.text] = {{"proposals", tally.proposals},
                                        {"compared", verdict.comparisons},
+                                       {"inverted", tally.plain},
+                                       {"moved", tally.moved},
                                        {"equalities", verdict.equalities},
                                        {"classes", verdict.classes},
                                        {"classes_too_small", verdict.unjudged},

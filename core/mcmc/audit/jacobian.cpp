@@ -19,6 +19,18 @@ double median(const std::vector<double>& values) {
     return quantile(values, 0.5);
 }
 
+bool isSpecular(const Path& x) {
+    for (int i = 0; i < x.size(); ++i)
+        if (isDelta(x[i].lobe)) return true;
+    return false;
+}
+/// The largest between vertices of the same number.
+double distance(const Path& x, const Path& y) {
+    double largest = 0;
+    for (int i = 0; i < x.size(); ++i) largest = std::max(largest, double(length(x[i].position - y[i].position)));
+    return largest;
+}
+
 class Comparer {
 public:
     Comparer(const AuditScene& scene, const Subject& subject, RandomKey key, JacobianTally& tally, StepObserver* watcher)
@@ -77,6 +89,10 @@ private:
             if (tally_.notInverted++ == 0) tally_.firstNotInverted = trial;  // a few, at the edge of visibility
             return;
         }
+        if (!isSpecular(x.path)) {
+            ++tally_.plain;
+            if (distance(x.path, path) > 0.5 * target_->tracing().offsetLength() && tally_.moved++ == 0) tally_.firstMoved = trial;
+        }
         const double stated = densities(scene_.scene, scene_.limits, path, factors).log(x.technique.s);
         compare(map, numbers, Path(), path, factors, stated, trial);
     }
@@ -116,6 +132,8 @@ private:
 void JacobianTally::merge(const JacobianTally& later) {
     if (notInverted == 0) firstNotInverted = later.firstNotInverted;
     inversions += later.inversions, notInverted += later.notInverted;
+    if (moved == 0) firstMoved = later.firstMoved;
+    plain += later.plain, moved += later.moved;
     proposals += later.proposals, noisy += later.noisy, notSquare += later.notSquare;
     for (const auto& [key, comparisons] : later.classes)
         classes[key].insert(classes[key].end(), comparisons.begin(), comparisons.end());
@@ -135,6 +153,8 @@ JacobianVerdict judge(const JacobianTally& tally) {
     if (double(tally.notInverted) > kNotInvertedShare * double(tally.inversions))
         verdict.failures.add(tally.firstNotInverted,
                              fmt::format("{} of {} states have no numbers that make them again", tally.notInverted, tally.inversions));
+    if (double(tally.moved) > kMovedShare * double(tally.plain))
+        verdict.failures.add(tally.firstMoved, fmt::format("{} of {} states move when they are made again from their numbers", tally.moved, tally.plain));
     for (const auto& [key, comparisons] : tally.classes) {
         // What one state says again and again is said once.
         std::map<uint64_t, std::vector<double>> byState;

@@ -18,8 +18,9 @@ namespace ulam::audit {
 inline constexpr double kJacobianTolerance = 0.01, kJacobianScatter = 0.12, kScatterQuantile = 0.75;
 inline constexpr size_t kFewestStates = 7, kFewestForScatter = 20;
 
-/// Largest share of states with light that may have no numbers that make them again.
-inline constexpr double kNotInvertedShare = 1e-3;
+/// Largest share of states with light that may have no numbers that make them again; and of those without specular
+/// vertices, of which the numbers may make another path, moved by more than half of what rays start off their surface.
+inline constexpr double kNotInvertedShare = 1e-3, kMovedShare = 0.1;
 
 struct JacobianTally {
     struct Comparison {
@@ -29,6 +30,7 @@ struct JacobianTally {
     };
     uint64_t proposals = 0, noisy = 0, notSquare = 0;
     uint64_t inversions = 0, notInverted = 0, firstNotInverted = 0;  ///< of states to numbers, those that failed, the first's trial
+    uint64_t plain = 0, moved = 0, firstMoved = 0;  ///< inversions without specular vertices, those that make another path
     std::map<std::string, std::vector<Comparison>> classes;
     void merge(const JacobianTally& later);
 };
