@@ -53,6 +53,18 @@ const char* typeOf(const ParameterMember& member) {
         member);
 }
 
+/// The smallest or largest value of an integer's type.
+Json limitOf(const ParameterMember& member, bool largest) {
+    return std::visit(
+        [largest]<class T>(const T*) -> Json {
+            if constexpr (std::is_integral_v<T> && !std::is_same_v<T, bool>)
+                return largest ? std::numeric_limits<T>::max() : std::numeric_limits<T>::min();
+            else
+                return nullptr;
+        },
+        member);
+}
+
 bool inRange(double value, const ParameterInfo& info) {
     if (info.min && (info.minExclusive ? value <= *info.min : value < *info.min)) return false;
     return !info.max || (info.maxExclusive ? value < *info.max : value <= *info.max);
@@ -137,11 +149,14 @@ ParameterInfo infoOf(const ParameterList::Parameter& parameter) {
             notes.maxExclusive,
             notes.unit,
             notes.help,
-            notes.choices};
+            notes.choices,
+            limitOf(parameter.member, false),
+            limitOf(parameter.member, true)};
 }
 
 Json schemaOf(const ParameterInfo& info) {
     Json number = {{"type", info.type == "integer" ? "integer" : "number"}};
+    if (info.type == "integer") number["minimum"] = info.lowest, number["maximum"] = info.highest;
     if (info.min) number[info.minExclusive ? "exclusiveMinimum" : "minimum"] = *info.min;
     if (info.max) number[info.maxExclusive ? "exclusiveMaximum" : "maximum"] = *info.max;
 

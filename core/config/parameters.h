@@ -47,6 +47,7 @@ struct ParameterInfo {
     std::string unit;
     std::string help;
     std::vector<std::string> choices;
+    Json lowest, highest;  ///< that the type of an integer holds
 
     /// "0 < x <= 1000000", "balance | power"; empty where anything goes.
     std::string range() const;

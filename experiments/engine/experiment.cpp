@@ -55,7 +55,7 @@ public:
         }
         if (!node.isObject()) node.expected("\"truth\", an EXR file, or an object with a sampler and a budget");
         const auto p = parseParameters<ReferenceParameters>(node, {});
-        if (!p.image.empty()) {
+        if (node.find("image")) {
             for (const char* key : {"sampler", "budget", "replicates"})
                 if (const auto other = node.find(key))
                     other->fail("a reference is either an image or made by a sampler");
@@ -170,6 +170,8 @@ Experiment parseExperiment(const JsonNode& root, const fs::path& folder, const s
     checkName(root.find("name").value_or(root), e.name);
     e.folder = folder;
     e.film = p.film.json();
+    for (const char* key : {"film", "scenes", "sweep", "scene"})
+        if (const auto node = root.find(key); node && node->isNull()) node->expected("a value");
     if (!p.film.isNull() && !p.film.isObject()) p.film.expected("an object with width and height");
     e.maxDepth = p.maxDepth;
     e.replicates = p.replicates;

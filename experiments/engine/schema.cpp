@@ -1,20 +1,14 @@
 // The JSON Schema of an experiment, from the descriptions that the parser uses.
 
+#include "core/base/error.h"
 #include "core/image/metrics.h"
+#include "core/mcmc/target.h"
 #include "core/scene/plugins.h"
 #include "experiments/engine/experiment.h"
 #include "experiments/engine/sweep_values.h"
 
 namespace ulam {
 namespace {
-
-Json registeredSampler(const Registry<Sampler>::Entry& entry) {
-    Json schema = jsonSchema(entry.parameters);
-    schema["description"] = entry.summary;
-    schema["properties"]["type"] = {{"const", entry.name}};
-    schema["required"] = Json::array({"type"});
-    return schema;
-}
 
 /// `schema` in place of the free form of a property, whose description stays.
 void refine(Json& object, const char* property, Json schema) {
@@ -23,16 +17,101 @@ void refine(Json& object, const char* property, Json schema) {
     place = std::move(schema);
 }
 
-Json anyOf(std::initializer_list<Json> alternatives) {
-    return {{"anyOf", Json(std::vector<Json>(alternatives))}};
+Json reference(const char* definition) {
+    return {{"$ref", std::string("#/definitions/") + definition}};
+}
+
+Json anyOf(const std::vector<Json>& alternatives) {
+    return {{"anyOf", alternatives}};
 }
 
 Json membersLike(const Json& schema) {
     return {{"type", "object"}, {"additionalProperties", schema}, {"minProperties", 1}};
 }
 
-Json reference(const char* definition) {
-    return {{"$ref", std::string("#/definitions/") + definition}};
+/// The same, where names become parts of folders' names.
+Json namedLike(const Json& schema) {
+    Json members = membersLike(schema);
+    members["propertyNames"] = {{"pattern", "^[A-Za-z0-9_+-]{1,64}$"}};
+    return members;
+}
+
+template <class Interface>
+Json registeredNames() {
+    Json names = Json::array();
+    for (const auto* entry : Registry<Interface>::instance().entries()) names.push_back(entry->name);
+    return names;
+}
+
+/// A registered plugin with its parameters, and with its "type".
+template <class Entry>
+Json pluginSchema(const Entry& entry) {
+    Json schema = jsonSchema(entry.parameters);
+    schema["description"] = entry.summary;
+    schema["properties"]["type"] = {{"const", entry.name}};
+    schema["required"] = Json::array({"type"});
+    return schema;
+}
+
+bool accepts(const std::string& sampler, const std::string& mutation) {
+    try {
+        Registry<Sampler>::instance().create(JsonNode(Json{{"type", sampler}, {"mutations", {{mutation, Json::object()}}}}));
+        return true;
+    } catch (const Error&) {
+        return false;
+    }
+}
+
+/// Mutations by name: that of a registered one, or any with a "type".
+Json mixSchema(const std::string& sampler) {
+    Json typed = Json::array(), own = Json::object();
+    for (const auto* entry : Registry<Mutation>::instance().entries()) {
+        if (!accepts(sampler, entry->name)) continue;
+        Json schema = pluginSchema(*entry);
+        schema["properties"]["weight"] = {{"type", "number"}, {"minimum", 0}, {"maximum", 1e9}, {"default", 1}, {"description", "relative probability of being chosen"}};
+        typed.push_back(schema);
+        schema.erase("required");
+        own[entry->name] = schema;
+    }
+    for (auto& schema : own) schema = anyOf({schema, {{"anyOf", typed}}});
+    Json mix = membersLike({{"anyOf", typed}});
+    mix["properties"] = own;
+    return mix;
+}
+
+/// A sampler of an experiment, which gives all of them one depth.
+Json samplerSchema(const Registry<Sampler>::Entry& entry) {
+    Json schema = pluginSchema(entry);
+    Json& properties = schema["properties"];
+    properties.erase("max_depth");
+    if (properties.contains("target")) refine(schema, "target", {{"enum", registeredNames<Importance>()}, {"default", properties["target"]["default"]}});
+    if (properties.contains("mutations")) refine(schema, "mutations", mixSchema(entry.name));
+    return schema;
+}
+
+/// The longest path of any sampler.
+double largestDepth() {
+    double largest = 1;
+    for (const auto* entry : Registry<Sampler>::instance().entries())
+        for (const ParameterInfo& p : entry->parameters)
+            if (p.name == "max_depth") largest = std::max(largest, p.max.value_or(largest));
+    return largest;
+}
+
+/// "truth", a file, an image with its variance, or a sampler with its budget.
+Json referenceSchema() {
+    const Json all = jsonSchema(parameterInfo<ReferenceParameters>());
+    const auto with = [&](const std::vector<std::string>& keys, std::vector<std::string> required) {
+        Json schema = {{"type", "object"}, {"properties", Json::object()}, {"required", required}, {"additionalProperties", false}};
+        for (const std::string& key : keys) schema["properties"][key] = all["properties"][key];
+        return schema;
+    };
+    Json image = with({"image", "variance"}, {"image"}), made = with({"sampler", "budget", "replicates"}, {"sampler", "budget"});
+    image["properties"]["image"]["pattern"] = "\\.exr$";
+    made["properties"]["replicates"]["multipleOf"] = 2;
+    refine(made, "sampler", anyOf({{{"type", "string"}, {"minLength", 1}}, reference("sampler")}));
+    refine(made, "budget", reference("budget"));
+    return anyOf({{{"type", "string"}, {"pattern", "^truth$|\\.exr$"}}, image, made});
 }
 
 /// A list, or a range with equal steps or random draws (sweep_values.h).
@@ -69,29 +148,23 @@ Json conditions() {
 }  // namespace
 
 Json experimentSchema() {
-    const Json text = {{"type", "string"}};
-
     Json samplers = Json::array();
-    Json samplerNames = Json::array();
-    for (const auto* entry : Registry<Sampler>::instance().entries()) {
-        samplers.push_back(registeredSampler(*entry));
-        samplerNames.push_back(entry->name);
-    }
+    for (const auto* entry : Registry<Sampler>::instance().entries()) samplers.push_back(samplerSchema(*entry));
 
     // A scene's schema refers to its own definitions: they move into this document under their names.
     Json scene = sceneSchema();
     Json definitions = scene["definitions"];
     scene.erase("definitions");
     scene.erase("$schema");
-    definitions["scene"] = anyOf({text, scene});
+    definitions["scene"] = anyOf({{{"type", "string"}, {"minLength", 1}, {"description", "a file, relative to the experiment"}}, scene});
     definitions["sampler"] = {{"anyOf", samplers}};
     definitions["budget"] = jsonSchema(parameterInfo<BudgetParameters>());
     definitions["budget"]["minProperties"] = 1;
-
-    Json made = jsonSchema(parameterInfo<ReferenceParameters>());
-    refine(made, "sampler", anyOf({text, reference("sampler")}));
-    refine(made, "budget", reference("budget"));
-    definitions["reference"] = anyOf({text, made});
+    for (Json& limit : definitions["budget"]["properties"]) {
+        limit.erase("minimum"), limit.erase("default");
+        limit["exclusiveMinimum"] = 0;
+    }
+    definitions["reference"] = referenceSchema();
 
     definitions["sweepValues"] = sweepValuesSchema();
 
@@ -101,18 +174,23 @@ Json experimentSchema() {
     Json schema = {{"$schema", "http://json-schema.org/draft-07/schema#"}, {"title", "Ulam experiment"}};
     schema.update(jsonSchema(parameterInfo<ExperimentParameters>()));
     refine(schema, "scene", reference("scene"));
-    refine(schema, "scenes", membersLike(reference("scene")));
+    refine(schema, "scenes", namedLike(reference("scene")));
+    schema["properties"]["name"]["pattern"] = "^[A-Za-z0-9_+-]{0,64}$";
+    schema["properties"]["max_depth"]["maximum"] = largestDepth();
     refine(schema, "film", {{"type", "object"}});
-    refine(schema, "samplers", membersLike(reference("sampler")));
+    refine(schema, "samplers", namedLike(reference("sampler")));
     refine(schema, "budget", reference("budget"));
     refine(schema, "metrics",
            {{"type", "array"}, {"items", {{"enum", metricNames}}}, {"minItems", 1}, {"uniqueItems", true}});
-    refine(schema, "reference", anyOf({reference("reference"), membersLike(reference("reference"))}));
+    Json byScene = namedLike(reference("reference"));
+    byScene["not"] = anyOf({{{"required", Json::array({"sampler"})}}, {{"required", Json::array({"budget"})}}, {{"required", Json::array({"image"})}}});
+    refine(schema, "reference", anyOf({reference("reference"), byScene}));
     refine(schema, "sweep",
            {{"type", "object"},
             {"properties", {{"zip", membersLike(reference("sweepValues"))}, {"where", conditions()}}},
             {"additionalProperties", reference("sweepValues")}});
     schema["required"] = Json::array({"samplers", "budget", "reference"});
+    schema["oneOf"] = Json::array({{{"required", Json::array({"scene"})}}, {{"required", Json::array({"scenes"})}}});
     schema["definitions"] = definitions;
     return schema;
 }

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const fs::path kHere = "tests/mitsuba", kBuild = "build/mitsuba", kPython = kBuild / "venv/bin/python";
+const fs::path kHere = "tests/mitsuba", kBuild = "build/mitsuba", kPython = "build/python/bin/python";
 
 constexpr int kRuns = 32, kThreads = 2;
 // Largest half width of the energy interval: 0.3 % with tests/run --full, else 1 % by an eleventh of the work.

@@ -1,0 +1,139 @@
+#!/usr/bin/env python3
+"""`ulam schema experiment` says of a file what `ulam run` says: hundreds of experiments, each with one value changed, are
+given to both."""
+
+import copy
+import json
+import os
+import pathlib
+import random
+import subprocess
+import sys
+import tempfile
+import unittest
+from concurrent.futures import ThreadPoolExecutor
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+PYTHON = ROOT / "build/python/bin/python"  # tests/run makes it
+if PYTHON.exists() and pathlib.Path(sys.prefix) != PYTHON.parent.parent:
+    os.execv(PYTHON, [str(PYTHON), *sys.argv])
+try:
+    import jsonschema
+except ImportError:
+    print("the schema is not checked: the Python package jsonschema is not installed")
+    sys.exit(0)
+
+ULAM = os.path.abspath(os.environ.get("ULAM", "build/release/ulam"))
+FULL = os.environ.get("ULAM_TEST_LEVEL") == "full"
+QUICK_CASES = 300
+
+# Budgets of time only: nothing has to be rendered to plan them.
+BASE = {
+    "scene": {"type": "sphere_light_center"},
+    "film": {"width": 16, "height": 16},
+    "samplers": {"mlt": {"type": "mlt"}, "other": {"type": "pssmlt"}},
+    "baseline": "other",
+    "budget": {"time": 1},
+    "reference": {"sampler": "mlt", "budget": {"time": 2}},
+}
+VALUES = [0, 1, -1, 2, 0.5, 1e9, 1e30, "x", "", True, None, [], {}, [1], [0, 1, 2], {"type": "x"}, ["relmse"]]
+# What a schema cannot know: names that stand elsewhere in the file, which files there are, what a sweep's values are for.
+BEYOND_SCHEMAS = ("unknown sampler of this experiment", "has no chains", "cannot read", "does not exist", "unknown scene",
+                  " at sweep ", " twice ", "no point of the sweep")
+
+
+def changed(document, path, value):
+    copied = copy.deepcopy(document)
+    place = copied
+    for step in path[:-1]:
+        place = place.setdefault(step, {})
+    place[path[-1]] = value
+    return copied
+
+
+def candidates(schema):
+    values = list(VALUES)
+    for bound in ("minimum", "exclusiveMinimum", "maximum", "exclusiveMaximum"):
+        if bound in schema:
+            limit = int(schema[bound]) if float(schema[bound]).is_integer() else schema[bound]
+            values += [limit, limit - 1, limit + 1]
+    return values + schema.get("enum", []) + ([schema["default"]] if "default" in schema else [])
+
+
+def experiments(schema):
+    """Pairs of what was changed, and the document."""
+    definitions = schema["definitions"]
+    places = [((name,), s) for name, s in schema["properties"].items()]
+    for name, s in definitions["budget"]["properties"].items():
+        places += [(("budget", name), s), (("reference", "budget", name), s)]
+    for form in definitions["reference"]["anyOf"][1:]:
+        places += [(("reference", name), s) for name, s in form["properties"].items()]
+    cases = [("nothing", BASE)]
+    cases += [(".".join(path), changed(BASE, path, value)) for path, s in places for value in candidates(s)]
+    for sampler in definitions["sampler"]["anyOf"]:
+        name = sampler["properties"]["type"]["const"]
+        document = changed(BASE, ("samplers", "mlt"), {"type": name})
+        cases.append((name, document))
+        for key, s in sampler["properties"].items():
+            if key != "type":
+                cases += [(f"{name}.{key}", changed(document, ("samplers", "mlt", key), value)) for value in candidates(s)]
+            if key == "mutations":
+                for mutation in ("lens", "large_step", "kelemen_step", "mine"):
+                    for entry in ({}, {"weight": 2}, {"weight": -1}, {"type": "large_step"}, {"type": "lens"}, {"wight": 1}):
+                        cases.append((f"{name}.{mutation}", changed(document, ("samplers", "mlt", key), {mutation: entry})))
+    for key in BASE:
+        cases.append((f"without {key}", {name: value for name, value in BASE.items() if name != key}))
+    for path in (("filmm",), ("budget", "tim"), ("samplers", "mlt", "chain"), ("samplers", "a b"), ("reference", "sample"), ("scenes", "a")):
+        cases += [(".".join(path), changed(BASE, path, value)) for value in (1, {"type": "path"}, {"type": "cornell_box"})]
+    ranges = [[2, 3], [], 3, "2"]
+    for scale in ("linear", "log", "lin"):
+        for ends in ([2, 4], [4, 2], [0, 4], [2], [2, 3, 4], ["2", 4]):
+            for number in ("steps", "draws", "step"):
+                ranges += [{scale: ends, number: n} for n in (3, 1, 0, 1000, 1001, 1.5)]
+    cases += [("sweep.max_depth", changed(BASE, ("sweep", "max_depth"), values)) for values in ranges]
+    cases += [("sweep.zip", changed(BASE, ("sweep", "zip", "max_depth"), values)) for values in ranges[:12]]
+    sweeping = changed(BASE, ("sweep", "max_depth"), [2, 3])
+    for comparison in ("<", "<=", ">", ">=", "==", "!=", "in", "=>", 1):
+        for value in (3, [2, 3], [], {"path": "budget.time"}, {"pth": 1}, None):
+            condition = ["max_depth", comparison, value]
+            cases += [("where", changed(sweeping, ("sweep", "where"), where)) for where in ([condition], [condition[:2]], condition)]
+    once = {json.dumps(document): (what, document) for what, document in cases}
+    return list(once.values())
+
+
+class Schema(unittest.TestCase):
+    def test_the_schema_and_the_program_agree(self):
+        schema = json.loads(subprocess.check_output([ULAM, "schema", "experiment"]))
+        jsonschema.Draft7Validator.check_schema(schema)
+        validator = jsonschema.Draft7Validator(schema)
+        cases = experiments(schema)
+        if not FULL:
+            cases = random.Random(1).sample(cases, QUICK_CASES)
+        with tempfile.TemporaryDirectory() as folder:
+            def run(case):
+                number, (what, document) = case
+                file = pathlib.Path(folder) / f"{number}.json"
+                file.write_text(json.dumps(document))
+                done = subprocess.run([ULAM, "run", file, "--dry-run", "--quiet", "--json"], capture_output=True, text=True)
+                file.unlink()
+                error = next(validator.iter_errors(document), None)
+                return what, document, done.returncode, done.stderr, error and error.message
+
+            with ThreadPoolExecutor(2) as pool:
+                results = list(pool.map(run, enumerate(cases)))
+        accepted = refused = 0
+        for what, document, code, message, error in results:
+            with self.subTest(what):
+                self.assertIn(code, (0, 4, 5), message)
+                if any(text in message for text in BEYOND_SCHEMAS):
+                    self.assertNotEqual(code, 0)
+                    continue
+                self.assertEqual(code == 0, error is None, f"{json.dumps(document)}\nprogram: {message or 'accepted'}\nschema: {error or 'accepted'}")
+                accepted, refused = accepted + (code == 0), refused + (code != 0)
+        print(f"{accepted} experiments accepted by both, {refused} refused by both")
+        self.assertGreaterEqual(accepted + refused, 200)
+        self.assertGreater(min(accepted, refused), 30)
+
+
+if __name__ == "__main__":
+    unittest.main()
