@@ -9,6 +9,7 @@
 #include "core/config/suggest.h"
 #include "experiments/cli/arguments.h"
 #include "experiments/cli/commands.h"
+#include "experiments/engine/extends.h"
 #include "experiments/engine/reference.h"
 #include "experiments/engine/result.h"
 #include "experiments/engine/signals.h"
@@ -96,7 +97,7 @@ void printResults(const Json& summary, const fs::path& runDir, const RunArgument
 }
 
 void runExperiment(const RunArguments& a) {
-    JsonDocument document = JsonDocument::fromFile(a.experiment);
+    JsonDocument document = readExperiment(a.experiment);
     document.applyOverrides(a.assignments);
     const Plan plan = makePlan(document, a.experiment);
     if (a.dryRun) return printDryRun(plan, a);

@@ -165,6 +165,7 @@ Json budgetJson(const Budget& budget) {
 Experiment parseExperiment(const JsonNode& root, const fs::path& folder, const std::string& defaultName) {
     if (!root.isObject()) root.expected("an experiment: an object");
     const auto p = parseParameters<ExperimentParameters>(root, {});
+    if (!p.extends.isNull()) p.extends.fail("\"extends\" is read in a file only");
     Experiment e;
     e.name = p.name.empty() ? defaultName : p.name;
     checkName(root.find("name").value_or(root), e.name);

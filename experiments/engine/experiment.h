@@ -46,7 +46,7 @@ struct ReferenceParameters {
 
 struct ExperimentParameters {
     std::string schema, name;
-    JsonNode scene, scenes, film;
+    JsonNode extends, scene, scenes, film;
     int maxDepth = 8;
     JsonNode samplers;
     std::string baseline;
@@ -61,6 +61,7 @@ struct ExperimentParameters {
     void describe(V& v) {
         v("$schema", schema, {.help = "JSON Schema for editors; not read"});
         v("name", name, {.help = "of the run; that of the file where not given"});
+        v("extends", extends, {.help = "file, or list of files, in the same folder that this one adds to and changes"});
         v("scene", scene, {.help = "the only scene: a dictionary, a generator, or a file relative to the experiment"});
         v("scenes", scenes, {.help = "scenes by name, each as under scene"});
         v("film", film, {.help = "width, height, crop_* and rfilter, for all scenes"});

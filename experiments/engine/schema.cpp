@@ -189,8 +189,12 @@ Json experimentSchema() {
            {{"type", "object"},
             {"properties", {{"zip", membersLike(reference("sweepValues"))}, {"where", conditions()}}},
             {"additionalProperties", reference("sweepValues")}});
-    schema["required"] = Json::array({"samplers", "budget", "reference"});
-    schema["oneOf"] = Json::array({{{"required", Json::array({"scene"})}}, {{"required", Json::array({"scenes"})}}});
+    const Json file = {{"type", "string"}, {"pattern", "^[^/]+$"}};
+    refine(schema, "extends", anyOf({file, {{"type", "array"}, {"items", file}}}));
+    // What a file leaves out the ones that it extends may have.
+    Json complete = {{"required", Json::array({"samplers", "budget", "reference"})}};
+    complete["oneOf"] = Json::array({{{"required", Json::array({"scene"})}}, {{"required", Json::array({"scenes"})}}});
+    schema["anyOf"] = Json::array({{{"required", Json::array({"extends"})}}, complete});
     schema["definitions"] = definitions;
     return schema;
 }
