@@ -116,7 +116,7 @@ std::string contentOf(const fs::path& folder) {
 std::string mitsubaRuns(const fs::path& folder, int maxDepth) {
     const std::string options = fmt::format("max_depth={} runs={} error={}", maxDepth, kRuns, kMitsubaError);
     const std::string key =
-        sha256(contentOf(folder) + options + readFile(kHere / "render.py") + readFile(kHere / "requirements.txt"));
+        sha256(contentOf(folder) + options + readFile(kHere / "render.py") + readFile("tests/requirements.txt"));
     const fs::path images = kBuild / "renders" / (key + ".f32");
     fs::create_directories(images.parent_path());
     if (!fs::exists(images)) {
