@@ -102,10 +102,20 @@ class ResumeTest(unittest.TestCase):
         self.ulam(*arguments)
         whole, stats = self.image("a.exr"), json.loads((self.folder / "a.json").read_text())
         for number, code in ((signal.SIGTERM, 143), (signal.SIGINT, 130)):
-            process = self.start(*arguments, "--resume")
-            time.sleep(0.6 * stats["wall_seconds"])
-            process.send_signal(number)
-            _, err = process.communicate(timeout=60)
+            wait = 0.6 * stats["wall_seconds"]
+            for _ in range(10):
+                process = self.start(*arguments, "--resume")
+                time.sleep(wait)
+                process.send_signal(number)
+                _, err = process.communicate(timeout=60)
+                # Machines change their pace: the signal is meant to come after seeding and before the end.
+                if process.returncode == 0:
+                    wait *= 0.8
+                elif "nothing was found until then" in err:
+                    (self.folder / "a.exr.checkpoint").unlink()
+                    wait *= 1.2
+                else:
+                    break
             self.assertEqual(process.returncode, code, err)
             self.assertIn("--resume goes on", err)
             self.assertTrue((self.folder / "a.exr.checkpoint").exists())
