@@ -81,8 +81,8 @@ struct AnglePerturbation {
     }
 };
 
-/// Between vertices that lie close together, the direction from place to place may be further from the one that was drawn
-/// than a step's rounding allows. Such a proposal is impossible by its own density, and so is the way back.
+/// Between vertices that lie very close together, the direction found from their places may be further from the one that
+/// was drawn than a step's rounding allows. Such a proposal is impossible by its own density, and so is the way back.
 inline void rejectIfRoundedAway(Proposal& p) {
     if (p.logForward == -std::numeric_limits<double>::infinity()) p.reject = Reject::NotInvertible;
 }

@@ -207,8 +207,8 @@ private:
     }
     bool arrives(const Vertex& from, const Vertex& to) const {
         // From where a walk's ray starts, so that the ray is the walk's up to the rounding of the vertex's place.
-        Vec3f w = directionTo(from, to), origin = from.position;
-        if (from.onSurface()) origin += from.normal * (dot(from.normal, w) > 0 ? 1 : -1) * tracing_.offsetLength();
+        Vec3f w = directionTo(from, to);
+        const Vec3f origin = tracing_.rayOrigin(from, w);
         if (!to.atInfinity()) w = normalize(to.position - origin);
         Vertex hit;
         if (!tracing_.nextFrom(origin, w, hit)) return !hittable(to);
