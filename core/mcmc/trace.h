@@ -3,6 +3,7 @@
 
 #include "core/mcmc/sample.h"
 
+#include <algorithm>
 #include <vector>
 
 namespace ulam {
@@ -36,12 +37,33 @@ public:
     }
 
     const Vec2f& origin() const { return origin_; }  ///< raster position of the first state
+    uint64_t stride() const { return stride_; }      ///< turns between two draws
     const std::vector<Draw>& draws() const { return draws_; }
+    /// Those at a multiple of the stride, by a power of two.
+    std::vector<Draw> drawsEvery(uint64_t stride) const {
+        std::vector<Draw> some;
+        for (size_t i = 0; i < draws_.size(); i += stride / stride_) some.push_back(draws_[i]);
+        return some;
+    }
 
 private:
     Vec2f origin_{0, 0};
     std::vector<Draw> draws_;
     uint64_t turn_ = 0, stride_ = 1;
 };
+
+/// Draws of all traces at the same turns, as many of each: one chain may have had a turn more than another.
+inline std::vector<std::vector<ChainTrace::Draw>> drawsAtSameTurns(const std::vector<const ChainTrace*>& traces) {
+    uint64_t stride = 1;
+    for (const ChainTrace* trace : traces) stride = std::max(stride, trace->stride());
+    std::vector<std::vector<ChainTrace::Draw>> draws;
+    size_t length = traces.empty() ? 0 : ChainTrace::kMost;
+    for (const ChainTrace* trace : traces) {
+        draws.push_back(trace->drawsEvery(stride));
+        length = std::min(length, draws.back().size());
+    }
+    for (auto& own : draws) own.resize(length);
+    return draws;
+}
 
 }  // namespace ulam

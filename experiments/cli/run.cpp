@@ -6,9 +6,11 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/file_lock.h"
+#include "core/base/memory.h"
 #include "core/config/suggest.h"
 #include "experiments/cli/arguments.h"
 #include "experiments/cli/commands.h"
+#include "experiments/engine/estimate.h"
 #include "experiments/engine/extends.h"
 #include "experiments/engine/reference.h"
 #include "experiments/engine/result.h"
@@ -54,36 +56,47 @@ std::vector<std::string> replicateWarnings(const Plan& plan) {
         p.size(), *std::ranges::max_element(p), statistics::kFamilyLevel)};
 }
 
-void printDryRun(const Plan& plan, const RunArguments& a) {
-    std::vector<std::string> warnings = replicateWarnings(plan);
-    Json resolved = plan.resolved();
-    double total = 0;
-    const auto estimate = [&](const Task& task) {
-        const double seconds = estimateSeconds(task, *a.threads) * task.replicates;
-        total += seconds;
-        return seconds;
+/// What is planned and what it will cost: resolved.json with estimates.
+Json plannedJson(const Plan& plan, const PlanEstimate& estimate) {
+    Json planned = plan.resolved();
+    const auto note = [](Json& place, const Estimate& of, int replicates) {
+        place["estimated_seconds"] = of.seconds * replicates;
+        place["estimated_bytes"] = of.bytes * replicates;
     };
     for (std::size_t i = 0; i < plan.cells.size(); ++i)
-        resolved["cells"][i]["estimated_seconds"] = estimate(plan.cells[i].task);
-    for (const PlannedReference& reference : plan.references)
-        if (reference.spec.kind == ReferenceSpec::Kind::Sampler)
-            resolved["references"][reference.key]["estimated_seconds"] =
-                isCached(reference) ? 0 : estimate(reference.task);
-    resolved["estimated_seconds"] = total;
-    resolved["warnings"] = warnings;
+        note(planned["cells"][i], estimate.cells[i], plan.cells[i].task.replicates);
+    for (std::size_t i = 0; i < plan.references.size(); ++i)
+        if (plan.references[i].spec.kind == ReferenceSpec::Kind::Sampler)
+            note(planned["references"][plan.references[i].key], estimate.references[i],
+                 plan.references[i].task.replicates);
+    note(planned, estimate.total(plan), 1);
+    planned["tried_cells"] = estimate.tried;
+    planned["warnings"] = replicateWarnings(plan);
+    return planned;
+}
+
+void printDryRun(const Plan& plan, const RunArguments& a) {
+    const PlanEstimate estimate = estimatePlan(plan, *a.threads);
+    const Json planned = plannedJson(plan, estimate);
     if (a.json) {
-        fmt::print("{}\n", dump(resolved));
+        fmt::print("{}\n", dump(planned));
         return;
     }
-    for (const auto& [key, reference] : resolved["references"].items())
+    for (const auto& [key, reference] : planned["references"].items())
         fmt::print("reference {}{}\n", key,
                    reference.contains("estimated_seconds") ? "  " + durationText(reference["estimated_seconds"]) : "");
-    for (const Json& cell : resolved["cells"])
-        fmt::print("cell {}  {} replicates of {}, random keys from {}, {}\n", cell["cell"].get<std::string>(),
+    for (const Json& cell : planned["cells"])
+        fmt::print("cell {}  {} replicates of {}, random keys from {}, {}, {}\n", cell["cell"].get<std::string>(),
                    cell["replicates"].dump(), cell["budget"].dump(), cell["random_keys"][0].dump(),
-                   durationText(cell["estimated_seconds"]));
-    fmt::print("{} cells, {} comparisons, about {}\n", plan.cells.size(), plan.comparisons.size(), durationText(total));
-    for (const std::string& warning : warnings) fmt::print(stderr, "warning: {}\n", warning);
+                   durationText(cell["estimated_seconds"]), sizeText(cell["estimated_bytes"]));
+    const Estimate total = estimate.total(plan);
+    fmt::print("{} cells, {} comparisons, about {} and {}{}\n", plan.cells.size(), plan.comparisons.size(),
+               durationText(total.seconds), sizeText(total.bytes),
+               estimate.tried < plan.cells.size() ? fmt::format(" (from trials of {} cells)", estimate.tried) : "");
+    if (plan.until)
+        fmt::print("up to {} replicates of a cell until every comparison is decided or known to {:g}\n",
+                   plan.until->maxReplicates, plan.until->relativeCi);
+    for (const Json& warning : planned["warnings"]) fmt::print(stderr, "warning: {}\n", warning.get<std::string>());
 }
 
 void printResults(const Json& summary, const fs::path& runDir, const RunArguments& a) {
@@ -99,7 +112,7 @@ void printResults(const Json& summary, const fs::path& runDir, const RunArgument
 void runExperiment(const RunArguments& a) {
     JsonDocument document = readExperiment(a.experiment);
     document.applyOverrides(a.assignments);
-    const Plan plan = makePlan(document, a.experiment);
+    Plan plan = makePlan(document, a.experiment);
     if (a.dryRun) return printDryRun(plan, a);
 
     RunOptions options;

@@ -28,10 +28,10 @@ template <class I>
 Json interval(const std::optional<I>& i) {
     return i ? Json{number(i->low), number(i->high)} : Json();
 }
-std::optional<Interval> meanInterval(const std::vector<double>& values) {
+std::optional<Interval> meanInterval(const std::vector<double>& values, double confidence) {
     const auto all = std::ranges::all_of(values, [](double x) { return std::isfinite(x); });
-    const auto found = all ? statistics::meanInterval(values) : std::nullopt;
-    return found ? std::optional(found->ci95) : std::nullopt;
+    const auto found = all ? statistics::meanInterval(values, confidence) : std::nullopt;
+    return found ? std::optional(found->interval) : std::nullopt;
 }
 
 std::span<const float> channels(const Image& image) {
@@ -105,21 +105,21 @@ private:
             Json perReplicate = Json::array();
             for (const double x : full) perReplicate.push_back(number(x));
             all[name] = {{"mean", number(statistics::mean(full))},
-                         {"ci95", interval(meanInterval(full))},
+                         {"ci95", interval(meanInterval(full, plan_.design.confidence()))},
                          {"trimmed_mean", number(statistics::mean(trimmed))},
                          {"worst_replicate", number(worst)},
                          {"values", perReplicate}};
-            if (name == primary_.name) summary_.errors = full;
+            if (name == primary_.name) summary_.errors.errors = full;
         }
         summary_.json["metrics"] = std::move(all);
 
-        // What debiasing subtracted is the same for every image: the reference is compared with itself.
-        summary_.referenceVariance = primary_.evaluate(reference_.image, reference_.image) -
-                                     primary_.evaluate(reference_.image, reference_.image, &reference_.variance);
+        for (const Replicate& r : replicates_) summary_.errors.replicates.push_back(r.number);
+        summary_.errors.referenceVariance = referenceVariance(plan_, reference_);
+        summary_.errors.halvesAgree = reference_.halvesAgree;
 
         std::vector<std::size_t> byError(replicates_.size());
         std::iota(byError.begin(), byError.end(), std::size_t{0});
-        std::ranges::stable_sort(byError, {}, [&](std::size_t i) { return summary_.errors[i]; });
+        std::ranges::stable_sort(byError, {}, [&](std::size_t i) { return summary_.errors.errors[i]; });
         summary_.json["worst_replicate"] = replicates_[byError.back()].number;
         summary_.json["median_replicate"] = replicates_[byError[byError.size() / 2]].number;
     }
@@ -166,9 +166,9 @@ private:
                                                {"rays", mean("rays")},
                                                {"mutations", mean("mutations")},
                                                {"samples", mean("samples")}};
-        points.push_back(point(1, costs, summary_.errors));
+        points.push_back(point(1, costs, summary_.errors.errors));
         for (std::size_t r = 0; r < replicates_.size(); ++r)
-            curves[r].push_back({replicates_[r].result.at("wall_seconds"), summary_.errors[r]});
+            curves[r].push_back({replicates_[r].result.at("wall_seconds"), summary_.errors.errors[r]});
         summary_.json["convergence"] = std::move(points);
 
         // -1 is the slope of a squared error.
@@ -180,14 +180,14 @@ private:
         summary_.curves = std::move(curves);
     }
 
-    static Json point(double fraction, std::map<std::string, double>& costs, const std::vector<double>& errors) {
+    Json point(double fraction, std::map<std::string, double>& costs, const std::vector<double>& errors) const {
         return {{"fraction", fraction},
                 {"seconds", costs["seconds"]},
                 {"rays", costs["rays"]},
                 {"mutations", costs["mutations"]},
                 {"samples", costs["samples"]},
                 {"error", number(statistics::mean(errors))},
-                {"ci95", interval(meanInterval(errors))}};
+                {"ci95", interval(meanInterval(errors, plan_.design.confidence()))}};
     }
 
     void addMutations() {
@@ -250,11 +250,11 @@ private:
     }
 
     void judgeReference() {
-        summary_.halvesAgree = reference_.halvesAgree;
+        const CellErrors& found = summary_.errors;
         const bool tooNoisy =
-            std::ranges::any_of(summary_.errors, [](double e) { return e <= 0; }) ||
-            summary_.referenceVariance > statistics::kReferenceShare * statistics::mean(summary_.errors);
-        summary_.json["reference_variance"] = summary_.referenceVariance;
+            std::ranges::any_of(found.errors, [](double e) { return e <= 0; }) ||
+            found.referenceVariance > statistics::kReferenceShare * statistics::mean(found.errors);
+        summary_.json["reference_variance"] = found.referenceVariance;
         summary_.json["reference_too_poor"] = tooNoisy || !reference_.halvesAgree;
         if (tooNoisy)
             warnings_.push_back(

@@ -134,6 +134,14 @@ std::vector<std::string> parseMetrics(const JsonNode& node) {
     return names;
 }
 
+UntilParameters parseUntil(const JsonNode& node, int replicates) {
+    const auto until = parseParameters<UntilParameters>(node, {});
+    if (replicates < 2) node.fail("intervals need \"replicates\" of at least 2 to start with");
+    if (until.maxReplicates < replicates)
+        node.find("max_replicates").value_or(node).expected(fmt::format("at least the {} \"replicates\"", replicates));
+    return until;
+}
+
 }  // namespace
 
 Budget parseBudget(const JsonNode& node) {
@@ -171,13 +179,15 @@ Experiment parseExperiment(const JsonNode& root, const fs::path& folder, const s
     checkName(root.find("name").value_or(root), e.name);
     e.folder = folder;
     e.film = p.film.json();
-    for (const char* key : {"film", "scenes", "sweep", "scene"})
+    for (const char* key : {"film", "scenes", "sweep", "scene", "until"})
         if (const auto node = root.find(key); node && node->isNull()) node->expected("a value");
     if (!p.film.isNull() && !p.film.isObject()) p.film.expected("an object with width and height");
     e.maxDepth = p.maxDepth;
     e.replicates = p.replicates;
     e.seed = p.seed;
     e.snapshots = p.snapshots;
+    e.commonRandomNumbers = p.commonRandomNumbers;
+    if (!p.until.isNull()) e.until = parseUntil(p.until, e.replicates);
     e.metrics = parseMetrics(p.metrics);
 
     if (p.scene.isNull() == p.scenes.isNull()) root.fail("expected either \"scene\" or \"scenes\"");

@@ -44,6 +44,21 @@ struct ReferenceParameters {
     }
 };
 
+/// When to stop adding replicates.
+struct UntilParameters {
+    double relativeCi = 0.05;
+    int maxReplicates = 128;
+
+    template <class V>
+    void describe(V& v) {
+        v("relative_ci", relativeCi,
+          {.help = "half the width of the interval of a ratio, or of a mean error where nothing is compared, over the value",
+           .min = 1e-4,
+           .max = 1});
+        v("max_replicates", maxReplicates, {.help = "of each cell", .min = 2, .max = 10000});
+    }
+};
+
 struct ExperimentParameters {
     std::string schema, name;
     JsonNode extends, scene, scenes, film;
@@ -53,6 +68,8 @@ struct ExperimentParameters {
     JsonNode budget;
     int replicates = 16;
     std::uint64_t seed = 1;
+    JsonNode until;
+    bool commonRandomNumbers = false;
     int snapshots = 6;
     JsonNode metrics{Json{"relmse", "mape", "flip"}};
     JsonNode reference, sweep;
@@ -71,7 +88,11 @@ struct ExperimentParameters {
         v("baseline", baseline, {.help = "sampler that the others are compared with; none: no comparisons"});
         v("budget", budget, {.help = "what each replicate may spend"});
         v("replicates", replicates, {.help = "independent runs of each sampler on each scene", .min = 1, .max = 10000});
+        v("until", until,
+          {.help = "add replicates until every comparison is decided, or its ratio is known to \"relative_ci\""});
         v("seed", seed, {.help = "master seed"});
+        v("common_random_numbers", commonRandomNumbers,
+          {.help = "replicates of one number share their random numbers in all cells; comparisons are then of pairs"});
         v("snapshots", snapshots,
           {.help = "images at 1/2, 1/4, ... of the budget, for convergence", .min = 0, .max = 20});
         v("metrics", metrics, {.help = "error metrics; the first is primary and carries the verdict"});
@@ -114,6 +135,8 @@ struct Experiment {
     Budget budget;
     int replicates;
     std::uint64_t seed;
+    std::optional<UntilParameters> until;
+    bool commonRandomNumbers;
     int snapshots;
     std::vector<std::string> metrics;
 };

@@ -31,20 +31,20 @@ bool isConstant(const std::vector<statistics::Trace>& values) {
 }  // namespace
 
 Json mixing(const std::vector<ChainTrace>& traces, double seconds) {
-    size_t length = traces.empty() ? 0 : traces[0].draws().size();
-    for (const ChainTrace& t : traces) length = std::min(length, t.draws().size());
-    if (length < kShortestTrace) return nullptr;
     std::vector<const ChainTrace*> sorted;
     for (const ChainTrace& t : traces) sorted.push_back(&t);
     std::stable_sort(sorted.begin(), sorted.end(),
                      [](const ChainTrace* a, const ChainTrace* b) { return zOrder(a->origin()) < zOrder(b->origin()); });
+    const auto draws = drawsAtSameTurns(sorted);
+    const size_t length = draws.empty() ? 0 : draws[0].size();
+    if (length < kShortestTrace) return nullptr;
     const size_t chains = traces.size() / kChainsPerSuperchain * kChainsPerSuperchain;
     Json out = Json::object();
     out["draws_per_chain"] = length;
     for (int scalar = 0; scalar < ChainTrace::kScalars; ++scalar) {
         std::vector<statistics::Trace> values(traces.size(), statistics::Trace(length));
         for (size_t c = 0; c < traces.size(); ++c)
-            for (size_t i = 0; i < length; ++i) values[c][i] = double(sorted[c]->draws()[i][size_t(scalar)]);
+            for (size_t i = 0; i < length; ++i) values[c][i] = double(draws[c][i][size_t(scalar)]);
         if (isConstant(values)) continue;  // such as the path length of states that are whole samples
         const double size = statistics::effectiveSampleSize(values);
         Json entry = {{"split_rhat", finite(statistics::splitRhat(values))}, {"ess", finite(size)}, {"ess_per_second", finite(size / seconds)}};

@@ -17,6 +17,11 @@ namespace fs = std::filesystem;
 /// References do not depend on an experiment's seed, so that experiments can share them.
 constexpr std::uint64_t kReferenceSeed = 0x7265666572656e63;
 
+/// How often the number of replicates can double before it reaches the most, the first look included.
+int looks(int replicates, int most) {
+    return replicates >= most ? 1 : 1 + looks(2 * replicates, most);
+}
+
 std::string sweptOrigin(const SweepValue& value) {
     return fmt::format("sweep {}={}", value.path, value.value.dump());
 }
@@ -43,6 +48,9 @@ private:
         plan_.name = e.name;
         plan_.metrics = e.metrics;
         plan_.seed = e.seed;
+        plan_.until = e.until;
+        plan_.design.paired = e.commonRandomNumbers;
+        if (e.until) plan_.design.looks = std::max(plan_.design.looks, looks(e.replicates, e.until->maxReplicates));
         for (const NamedScene& scene : e.scenes) {
             const auto planned = plannedScene(scene, e);
             const std::size_t reference = referenceFor(scene.reference, planned, e);
@@ -124,7 +132,7 @@ private:
             }
         }
         reference.key = fmt::format("{}-{}", kind, sha256(identity.dump()).substr(0, 16));
-        reference.task.name = reference.key;
+        reference.task.name = reference.task.stream = reference.key;
         for (std::size_t i = 0; i < plan_.references.size(); ++i)
             if (plan_.references[i].key == reference.key) return i;
         plan_.references.push_back(std::move(reference));
@@ -142,6 +150,7 @@ private:
             task.name += "," + value.label;
             cell.sweep[value.path] = value.value;
         }
+        task.stream = e.commonRandomNumbers ? "common random numbers" : task.name;
         task.scene = scene;
         task.sampler = sampler.name;
         task.parameters = sampler.parameters;
@@ -187,11 +196,11 @@ Json taskJson(const Task& task) {
 }  // namespace
 
 RandomKey Task::key(int replicate) const {
-    return makeKey(seed, hash64(name), static_cast<std::uint64_t>(replicate));
+    return makeKey(seed, hash64(stream), static_cast<std::uint64_t>(replicate));
 }
 
 std::string Task::hash() const {
-    return sha256(Json{{"name", name},
+    return sha256(Json{{"stream", stream},
                        {"scene", scene->scene.hash},
                        {"parameters", parameters},
                        {"budget", budgetJson(budget)},
@@ -202,14 +211,15 @@ std::string Task::hash() const {
                       .dump());
 }
 
-std::vector<Plan::Replicate> Plan::order() const {
+std::vector<Plan::Replicate> Plan::order(const std::vector<int>& done) const {
     std::vector<Replicate> all;
+    const auto first = [&](std::size_t c) { return done.empty() ? 0 : done[c]; };
     int blocks = 0;
     for (const Cell& cell : cells) blocks = std::max(blocks, cell.task.replicates);
     for (int block = 0; block < blocks; ++block) {
         const auto begin = static_cast<std::ptrdiff_t>(all.size());
         for (std::size_t c = 0; c < cells.size(); ++c)
-            if (block < cells[c].task.replicates) all.push_back({c, block});
+            if (block >= first(c) && block < cells[c].task.replicates) all.push_back({c, block});
         Random random(makeKey(seed, hash64("order of the cells")), 0, static_cast<std::uint64_t>(block));
         for (auto n = static_cast<std::ptrdiff_t>(all.size()) - begin; n > 1; --n)
             std::swap(all[static_cast<std::size_t>(begin + n - 1)],
@@ -220,9 +230,9 @@ std::vector<Plan::Replicate> Plan::order() const {
 
 std::vector<double> Plan::smallestAdjustedP() const {
     std::vector<std::pair<std::size_t, std::size_t>> sizes;
-    for (const PlannedComparison& c : comparisons)
-        sizes.emplace_back(cells[c.cell].task.replicates, cells[c.baseline].task.replicates);
-    return statistics::smallestAdjustedP(sizes);
+    const auto most = [&](std::size_t cell) { return until ? until->maxReplicates : cells[cell].task.replicates; };
+    for (const PlannedComparison& c : comparisons) sizes.emplace_back(most(c.cell), most(c.baseline));
+    return statistics::smallestAdjustedP(sizes, design);
 }
 
 Json Plan::resolved() const {
@@ -262,6 +272,8 @@ Json Plan::resolved() const {
             {"source", source},
             {"seed", seed},
             {"metrics", metrics},
+            {"common_random_numbers", design.paired},
+            {"looks", design.looks},
             {"scenes", scenesJson},
             {"references", referencesJson},
             {"cells", cellsJson},

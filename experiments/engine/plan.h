@@ -7,6 +7,7 @@
 #include "core/scene/load.h"
 #include "experiments/engine/experiment.h"
 #include "experiments/engine/sweep.h"
+#include "experiments/statistics/design.h"
 
 namespace ulam {
 
@@ -24,13 +25,14 @@ struct PlannedScene {
 
 /// One algorithm on one scene with one budget: what is run in independent replicates.
 struct Task {
-    std::string name;  ///< of its folder; its random numbers depend on it
+    std::string name;  ///< of its folder
+    std::string stream;  ///< what its random numbers depend on, beside seed and replicate: its name, or what cells share
     std::shared_ptr<const PlannedScene> scene;
     std::string sampler;  ///< its name in the experiment
     Json parameters;
     Budget budget;  ///< of one replicate
     int maxDepth = 8;
-    int replicates = 1;
+    int replicates = 1;  ///< of an experiment with "until" those so far
     int snapshots = 0;
     std::uint64_t seed = 1;
 
@@ -63,6 +65,8 @@ struct Plan {
     std::string source;  ///< its file
     std::vector<std::string> metrics;
     std::uint64_t seed = 1;
+    std::optional<UntilParameters> until;
+    statistics::Design design;  ///< of the comparisons
     std::vector<PlannedReference> references;
     std::vector<Cell> cells;
     std::vector<PlannedComparison> comparisons;
@@ -72,9 +76,9 @@ struct Plan {
         int number;
     };
     /// Block after block of one replicate of every cell, each in an order of its own, so that drift of the machine
-    /// hits all cells alike.
-    std::vector<Replicate> order() const;
-    /// The smallest adjusted p of each comparison when it has this many replicates.
+    /// hits all cells alike. `done` has the number of replicates of each cell that are left out, its first ones.
+    std::vector<Replicate> order(const std::vector<int>& done = {}) const;
+    /// The smallest adjusted p of each comparison when it has as many replicates as it can get.
     std::vector<double> smallestAdjustedP() const;
     /// resolved.json: every default, every seed, scene hashes.
     Json resolved() const;

@@ -1,6 +1,7 @@
 #include "experiments/engine/replicate.h"
 
 #include "core/base/file.h"
+#include "experiments/engine/chain_file.h"
 
 namespace ulam {
 
@@ -36,6 +37,21 @@ void checkSnapshots(const Task& task, const JsonNode& snapshots, const fs::path&
     }
 }
 
+RunIdentity identityOf(const Task& task, int replicate, int threads) {
+    RunIdentity run;
+    run.scene = task.scene->name;
+    run.sceneHash = task.scene->scene.hash;
+    run.sampler = task.sampler;
+    run.parameters = task.parameters;
+    run.seed = task.seed;
+    run.replicate = replicate;
+    run.key = task.key(replicate);
+    run.threads = threads;
+    run.setupSeconds = task.scene->setupSeconds;
+    run.source = task.scene->source;
+    return run;
+}
+
 }  // namespace
 
 fs::path replicateFolder(const fs::path& taskFolder, int replicate) {
@@ -69,40 +85,37 @@ std::optional<FinishedReplicate> finishedReplicate(const Task& task, int replica
     }
 }
 
-bool renderReplicate(const Task& task, int replicate, const fs::path& taskFolder, int threads,
-                     const std::atomic<bool>& interrupt, const std::function<void(double)>& progress) {
-    RunIdentity run;
-    run.scene = task.scene->name;
-    run.sceneHash = task.scene->scene.hash;
-    run.sampler = task.sampler;
-    run.parameters = task.parameters;
-    run.seed = task.seed;
-    run.replicate = replicate;
-    run.key = task.key(replicate);
-    run.threads = threads;
-    run.setupSeconds = task.scene->setupSeconds;
-    run.source = task.scene->source;
-
-    RenderOptions options;
-    options.budget = task.budget;
-    options.key = run.key;
-    options.threads = threads;
-    options.snapshots = task.snapshots;
-    options.progress = progress;
-    options.interrupt = &interrupt;
-    const fs::path folder = replicateFolder(taskFolder, replicate);
-    options.checkpoint = CheckpointPlan{.file = checkpointFile(taskFolder, replicate),
-                                        .identity = {{"task", task.hash()}, {"replicate", replicate}},
-                                        .resume = Resume::IfUsable};
-    makeFolder(folder);
-    const auto sampler = Registry<Sampler>::instance().create(JsonNode(task.parameters));
-    const RenderResult result = render(task.scene->scene, *sampler, options);
-    if (result.interrupted) return false;
-
+void writeReplicate(const Task& task, int replicate, const fs::path& taskFolder, int threads,
+                    const RenderResult& result) {
+    const RunIdentity run = identityOf(task, replicate, threads);
     Json fields = resultJson(run, result, task.scene->scene.features);
     fields["budget"] = budgetJson(task.budget);
     fields["task_hash"] = task.hash();
-    writeRun(folder, run, result, fields);
+    fields["traces"] = chainFileJson(result.statistics.traces);
+    writeRun(replicateFolder(taskFolder, replicate), run, result, fields);
+}
+
+RenderResult renderTask(const Task& task, RenderOptions options) {
+    options.budget = task.budget;
+    options.snapshots = task.snapshots;
+    const auto sampler = Registry<Sampler>::instance().create(JsonNode(task.parameters));
+    return render(task.scene->scene, *sampler, options);
+}
+
+bool renderReplicate(const Task& task, int replicate, const fs::path& taskFolder, int threads,
+                     const std::atomic<bool>& interrupt, const std::function<void(double)>& progress) {
+    RenderOptions options;
+    options.key = task.key(replicate);
+    options.threads = threads;
+    options.progress = progress;
+    options.interrupt = &interrupt;
+    options.checkpoint = CheckpointPlan{.file = checkpointFile(taskFolder, replicate),
+                                        .identity = {{"task", task.hash()}, {"replicate", replicate}},
+                                        .resume = Resume::IfUsable};
+    makeFolder(replicateFolder(taskFolder, replicate));
+    const RenderResult result = renderTask(task, options);
+    if (result.interrupted) return false;
+    writeReplicate(task, replicate, taskFolder, threads, result);
     std::error_code ignored;
     fs::remove(options.checkpoint->file, ignored);
     return true;

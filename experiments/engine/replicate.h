@@ -28,6 +28,13 @@ std::optional<FinishedReplicate> finishedReplicate(const Task& task, int replica
                                                    const std::filesystem::path& taskFolder,
                                                    std::string* damage = nullptr);
 
+/// Renders with the task's budget and snapshots; key, threads and the rest are in the options.
+RenderResult renderTask(const Task& task, RenderOptions options);
+
+/// Writes the folder of a replicate.
+void writeReplicate(const Task& task, int replicate, const std::filesystem::path& taskFolder, int threads,
+                    const RenderResult& result);
+
 /// Renders a replicate and writes its folder. Returns false where a signal stopped it: then nothing is written.
 bool renderReplicate(const Task& task, int replicate, const std::filesystem::path& taskFolder, int threads,
                      const std::atomic<bool>& interrupt, const std::function<void(double)>& progress);

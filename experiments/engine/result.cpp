@@ -8,6 +8,7 @@
 #include "core/base/memory.h"
 #include "core/base/sha256.h"
 #include "core/mcmc/mutation_mix.h"
+#include "experiments/engine/chain_file.h"
 #include "experiments/engine/mixing.h"
 #include "experiments/engine/path_token.h"
 #include "experiments/engine/provenance.h"
@@ -188,6 +189,7 @@ void writeRun(const fs::path& folder, const RunIdentity& run, const RenderResult
     for (const auto& [name, image] : result.statistics.extraImages)
         writeExr(folder / "extra" / (name + ".exr"), image, attributes);
     writeExr(folder / "image.exr", result.image, attributes);
+    writeChains(folder, result.statistics.traces);
     writeFileAtomically(folder / "result.json", dump(resultFields) + "\n");
 }
 

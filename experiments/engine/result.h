@@ -52,7 +52,7 @@ std::string imageHash(const Image& image);
 /// An image whose hash was recorded when it was written. Errors as readImage, and InvalidConfig where the hash differs.
 Image readRecordedImage(const std::filesystem::path& file, const JsonNode& hash);
 
-/// Writes image.exr, snapshots/ and extra/ into a folder that is made, and result.json last: a run with a result.json
+/// Writes image.exr, snapshots/, extra/ and chains.npy into a folder that is made, and result.json last: a run with a result.json
 /// is complete.
 void writeRun(const std::filesystem::path& folder, const RunIdentity& run, const RenderResult& result,
               const Json& resultFields);

@@ -9,13 +9,12 @@
 #include "experiments/engine/provenance.h"
 #include "experiments/engine/reference.h"
 #include "experiments/engine/replicate.h"
+#include "experiments/engine/sequential.h"
 
 namespace ulam {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr double kTrialSeconds = 0.3;
 
 /// How much of the whole is done, in expected seconds: time budgets are known beforehand, other work is as long as that
 /// of the same task was, and before that as long as an average piece.
@@ -25,7 +24,7 @@ public:
         for (const Cell& cell : plan.cells) left_[&cell.task] = cell.task.replicates;
     }
 
-    void add(const Task& task) { left_[&task] = task.replicates; }
+    void add(const Task& task, int replicates) { left_[&task] += replicates; }
     void skip(const Task& task) { --left_[&task]; }
     void drop(const Task& task) { left_[&task] = 0; }
     void finish(const Task& task, double seconds) {
@@ -59,13 +58,15 @@ private:
 
 class Runner {
 public:
-    Runner(const Plan& plan, const RunOptions& options, const std::atomic<bool>& interrupt, Progress& progress)
+    Runner(Plan& plan, const RunOptions& options, const std::atomic<bool>& interrupt, Progress& progress)
         : plan_(plan), options_(options), interrupt_(interrupt), progress_(progress), workload_(plan) {}
 
     RunOutcome run() {
         writeHeader();
         makeReferences();
-        if (!outcome_.interrupted) renderCells();
+        std::vector<int> done(plan_.cells.size(), 0);
+        do renderCells(done);
+        while (wantsMore(done));
         progress_.clear();
         return std::move(outcome_);
     }
@@ -76,8 +77,23 @@ private:
         Json origin = provenance(processArguments());
         origin["threads"] = options_.threads;
         writeFileAtomically(options_.runDir / "experiment.json", dump(plan_.experiment) + "\n");
-        writeFileAtomically(options_.runDir / "resolved.json", dump(plan_.resolved()) + "\n");
         writeFileAtomically(options_.runDir / "provenance.json", dump(origin) + "\n");
+        writeResolved();
+    }
+
+    void writeResolved() { writeFileAtomically(options_.runDir / "resolved.json", dump(plan_.resolved()) + "\n"); }
+
+    /// After a look at what there is. `done` becomes the number of replicates that were tried of each cell.
+    bool wantsMore(std::vector<int>& done) {
+        if (outcome_.interrupted || !plan_.until) return false;
+        for (std::size_t c = 0; c < done.size(); ++c) done[c] = plan_.cells[c].task.replicates;
+        const int added = addReplicates(plan_, options_.runDir, withoutReference_);
+        if (added == 0) return false;
+        for (std::size_t c = 0; c < done.size(); ++c)
+            workload_.add(plan_.cells[c].task, plan_.cells[c].task.replicates - done[c]);
+        writeResolved();
+        progress_.message(fmt::format("not decided yet: {} replicates more", added));
+        return true;
     }
 
     void makeReferences() {
@@ -86,7 +102,7 @@ private:
             attempt(i, [&] {
                 if (!prepareReference(plan_.references[i], options_.runDir)) missing.push_back(i);
             });
-        for (const std::size_t i : missing) workload_.add(plan_.references[i].task);
+        for (const std::size_t i : missing) workload_.add(plan_.references[i].task, plan_.references[i].task.replicates);
         for (const std::size_t i : missing) {
             attempt(i, [&] { makeParts(plan_.references[i]); });
             if (outcome_.interrupted) return;
@@ -125,8 +141,9 @@ private:
         }
     }
 
-    void renderCells() {
-        for (const Plan::Replicate& next : plan_.order()) {
+    void renderCells(const std::vector<int>& done) {
+        if (outcome_.interrupted) return;
+        for (const Plan::Replicate& next : plan_.order(done)) {
             const Cell& cell = plan_.cells[next.cell];
             if (withoutReference_.contains(cell.reference)) continue;
             const std::string what =
@@ -170,7 +187,7 @@ private:
         return true;
     }
 
-    const Plan& plan_;
+    Plan& plan_;
     const RunOptions& options_;
     const std::atomic<bool>& interrupt_;
     Progress& progress_;
@@ -182,30 +199,13 @@ private:
 
 }  // namespace
 
-RunOutcome runPlan(const Plan& plan, const RunOptions& options, const std::atomic<bool>& interrupt,
+RunOutcome runPlan(Plan& plan, const RunOptions& options, const std::atomic<bool>& interrupt,
                    Progress& progress) {
     return Runner(plan, options, interrupt, progress).run();
 }
 
 fs::path cellFolder(const fs::path& runDir, const Cell& cell) {
     return runDir / "cells" / cell.task.name;
-}
-
-double estimateSeconds(const Task& task, int threads) {
-    if (task.budget.seconds) return *task.budget.seconds;
-    RenderOptions options;
-    options.budget = task.budget;
-    options.budget.seconds = kTrialSeconds;
-    options.key = task.key(0);
-    options.threads = threads;
-    const auto sampler = Registry<Sampler>::instance().create(JsonNode(task.parameters));
-    const RenderResult trial = render(task.scene->scene, *sampler, options);
-    const double pixels = double(trial.image.width) * trial.image.height, units = std::max(1.0, double(trial.units));
-    double factor = std::numeric_limits<double>::infinity();
-    if (task.budget.spp) factor = std::min(factor, *task.budget.spp * pixels / units);
-    if (task.budget.mutations) factor = std::min(factor, *task.budget.mutations / units);
-    if (task.budget.rays) factor = std::min(factor, *task.budget.rays / std::max(1.0, double(trial.statistics.rays)));
-    return trial.wallSeconds * factor;
 }
 
 }  // namespace ulam

@@ -33,12 +33,10 @@ struct RunOutcome {
 
 /// Writes experiment.json, resolved.json, provenance.json, references/ and cells/. Without keepGoing the first failing
 /// reference or replicate throws; CannotWrite always does.
-RunOutcome runPlan(const Plan& plan, const RunOptions& options, const std::atomic<bool>& interrupt, Progress& progress);
+/// The replicates that "until" adds are added to the plan.
+RunOutcome runPlan(Plan& plan, const RunOptions& options, const std::atomic<bool>& interrupt, Progress& progress);
 
 /// RUN_DIR/cells/CELL
 std::filesystem::path cellFolder(const std::filesystem::path& runDir, const Cell& cell);
-
-/// Expected wall seconds of one replicate: its time budget, or extrapolated from a short trial.
-double estimateSeconds(const Task& task, int threads);
 
 }  // namespace ulam

@@ -180,6 +180,7 @@ Json experimentSchema() {
     refine(schema, "film", {{"type", "object"}});
     refine(schema, "samplers", namedLike(reference("sampler")));
     refine(schema, "budget", reference("budget"));
+    refine(schema, "until", jsonSchema(parameterInfo<UntilParameters>()));
     refine(schema, "metrics",
            {{"type", "array"}, {"items", {{"enum", metricNames}}}, {"minItems", 1}, {"uniqueItems", true}});
     Json byScene = namedLike(reference("reference"));

@@ -39,32 +39,35 @@ Json constantsOf(const std::vector<std::string>& names) {
 struct Judged {
     const CellSummary* cell;
     const CellSummary* baseline;
+    ComparedReplicates replicates;
     statistics::Comparison comparison;
 };
 
-Judged judge(const CellSummary& cell, const CellSummary& baseline) {
-    Judged judged{&cell, &baseline, statistics::compare(cell.errors, baseline.errors, cell.referenceVariance)};
-    if (!cell.halvesAgree) judged.comparison.referenceTooPoor = true;
-    return judged;
+Json optionalNumber(const std::optional<double>& x) {
+    return x ? Json(*x) : Json();
 }
 
-Json comparisonJson(const Judged& judged, const std::string& metric) {
+Json comparisonJson(const Judged& judged, const std::string& metric, const statistics::Design& design) {
     const statistics::Comparison& c = judged.comparison;
     std::vector<statistics::CurvePoint> ends;
-    for (const auto& curve : judged.cell->curves) ends.push_back(curve.back());
-    const statistics::Speedup speedup = statistics::speedup(ends, judged.baseline->curves);
+    for (const auto& curve : pick(judged.cell->curves, judged.replicates.sampler)) ends.push_back(curve.back());
+    const statistics::Speedup speedup =
+        statistics::speedup(ends, pick(judged.baseline->curves, judged.replicates.baseline), design);
     return {{"scene", judged.cell->json["scene"]},
             {"sampler", judged.cell->json["sampler"]},
             {"baseline", judged.baseline->json["sampler"]},
             {"cell", judged.cell->json["cell"]},
             {"baseline_cell", judged.baseline->json["cell"]},
             {"metric", metric},
-            {"ratio", c.ratio ? Json(*c.ratio) : Json()},
+            {"ratio", optionalNumber(c.ratio)},
             {"ci95", interval(c.ci95)},
-            {"speedup", speedup.value ? Json(*speedup.value) : Json()},
+            {"speedup", optionalNumber(speedup.value)},
             {"speedup_ci95", interval(speedup.ci95)},
             {"p", c.p},
             {"p_adjusted", c.pAdjusted},
+            {"paired", design.paired},
+            {"looks", design.looks},
+            {"detectable_ratio", optionalNumber(c.detectableRatio)},
             {"verdict", statistics::verdictName(c.verdict)},
             {"reference_too_poor", c.referenceTooPoor},
             {"heavy_tailed", c.heavyTailed}};
@@ -89,6 +92,8 @@ std::string verdictSentence(const Judged& judged, const Json& comparison) {
         reason = ", the reference is too poor";
     else if (!c.ci95)
         reason = ", too few replicates";
+    else if (c.verdict == statistics::Verdict::Undecided && c.detectableRatio)
+        reason = fmt::format(", differences below a factor of {:.2g} cannot be told at this scatter", 1 / *c.detectableRatio);
     if (!c.ratio) return fmt::format("{} against {} in {}: {}{}", start, baseline, metric, verdict, reason);
     const std::string range = c.ci95 ? fmt::format("95 % {:.3g}–{:.3g}, ", c.ci95->low, c.ci95->high) : "";
     return fmt::format("{} has {:.3g} times the {} of {} ({}p = {:.2g} adjusted): {}{}", start, *c.ratio, metric,
@@ -108,7 +113,7 @@ public:
         compareAll(summary);
         Json cells = Json::array();
         for (const CellSummary& cell : cells_) {
-            if (cell.errors.empty()) continue;
+            if (cell.errors.errors.empty()) continue;
             cells.push_back(cell.json);
             for (const Json& warning : cell.json["warnings"])
                 warn("{}: {}", cell.json["cell"].get<std::string>(), warning.get<std::string>());
@@ -153,28 +158,22 @@ private:
                 known =
                     references.emplace(cell.reference, readReference(plan_.references[cell.reference], runDir_)).first;
             cells_.push_back(summarizeCell(plan_, cell, known->second, runDir_));
-            if (cells_.back().errors.empty()) warn("{}: no replicate finished", cell.task.name);
+            if (cells_.back().errors.errors.empty()) warn("{}: no replicate finished", cell.task.name);
         }
     }
 
     void compareAll(Json& summary) {
-        std::vector<Judged> judged;
-        for (const PlannedComparison& c : plan_.comparisons)
-            if (!cells_[c.cell].errors.empty() && !cells_[c.baseline].errors.empty())
-                judged.push_back(judge(cells_[c.cell], cells_[c.baseline]));
-        std::vector<statistics::Comparison> family;
-        for (const Judged& j : judged) family.push_back(j.comparison);
-        statistics::decide(family);
-
+        std::vector<const CellErrors*> errors;
+        for (const CellSummary& cell : cells_) errors.push_back(&cell.errors);
         Json comparisons = Json::array(), verdicts = Json::array();
-        for (std::size_t i = 0; i < judged.size(); ++i) {
-            judged[i].comparison = family[i];
-            comparisons.push_back(comparisonJson(judged[i], plan_.metrics.front()));
-            verdicts.push_back(verdictSentence(judged[i], comparisons.back()));
-            if (family[i].heavyTailed)
+        for (const DecidedComparison& decided : decideComparisons(plan_, errors)) {
+            const Judged judged{&cells_[decided.planned.cell], &cells_[decided.planned.baseline], decided.replicates,
+                                decided.result};
+            comparisons.push_back(comparisonJson(judged, plan_.metrics.front(), plan_.design));
+            verdicts.push_back(verdictSentence(judged, comparisons.back()));
+            if (decided.result.heavyTailed)
                 warn("{} against {}: the errors are heavy-tailed, so that the interval may cover less than 95 %",
-                     judged[i].cell->json["cell"].get<std::string>(),
-                     judged[i].baseline->json["cell"].get<std::string>());
+                     judged.cell->json["cell"].get<std::string>(), judged.baseline->json["cell"].get<std::string>());
         }
         summary["comparisons"] = std::move(comparisons);
         summary["verdicts"] = std::move(verdicts);

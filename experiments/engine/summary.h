@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "experiments/engine/reference.h"
+#include "experiments/engine/cell_errors.h"
 #include "experiments/engine/run.h"
 #include "experiments/statistics/curve.h"
 
@@ -12,10 +12,8 @@ namespace ulam {
 /// A cell's finished replicates and what they amount to.
 struct CellSummary {
     Json json;                              ///< its entry in summary.json
-    std::vector<double> errors;             ///< primary metric of each finished replicate
+    CellErrors errors;
     std::vector<statistics::Curve> curves;  ///< per replicate: seconds and primary metric, snapshots and final image
-    double referenceVariance = 0;           ///< what debiasing subtracted from each error
-    bool halvesAgree = true;
 };
 
 CellSummary summarizeCell(const Plan& plan, const Cell& cell, const Reference& reference,

@@ -74,7 +74,7 @@ bool errorsPositive(std::span<const CurvePoint> points) {
 
 }  // namespace
 
-Speedup speedup(std::span<const CurvePoint> samplerEnds, std::span<const Curve> baseline, std::uint64_t seed) {
+Speedup speedup(std::span<const CurvePoint> samplerEnds, std::span<const Curve> baseline, const Design& design) {
     if (samplerEnds.empty() || baseline.empty() || baseline.front().empty()) {
         fail(ExitCode::InvalidConfig, "speed-up: expected at least one replicate and one snapshot on each side");
     }
@@ -82,6 +82,10 @@ Speedup speedup(std::span<const CurvePoint> samplerEnds, std::span<const Curve> 
         if (curve.size() == baseline.front().size()) continue;
         fail(ExitCode::InvalidConfig, "speed-up: expected {} snapshots in every replicate of the baseline, found {}",
              baseline.front().size(), curve.size());
+    }
+    if (design.paired && samplerEnds.size() != baseline.size()) {
+        fail(ExitCode::InvalidConfig, "speed-up: expected as many replicates on both sides, found {} and {}",
+             samplerEnds.size(), baseline.size());
     }
     Speedup result;
     if (!errorsPositive(samplerEnds) || !std::ranges::all_of(baseline, errorsPositive)) {
@@ -101,14 +105,17 @@ Speedup speedup(std::span<const CurvePoint> samplerEnds, std::span<const Curve> 
     const std::size_t smaller = std::min(ends.size(), curves.size());
     if (smaller < 2) return result;
 
-    PhiloxStream random(seed);
+    PhiloxStream random(kResamplingSeed);
     std::vector<double> draws(kBootstrapResamples);
     for (double& draw : draws) {
         redraw(ends, random);
-        redraw(curves, random);
+        if (design.paired)
+            curves = ends;
+        else
+            redraw(curves, random);
         draw = extendedSpeedup(samplerEnds, ends, baseline, curves);
     }
-    const double tail = bootstrapTail(smaller);
+    const double tail = bootstrapTail(smaller, design.confidence());
     result.ci95 = Interval{quantile(draws, tail), quantile(draws, 1 - tail)};
     return result;
 }

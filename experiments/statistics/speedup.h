@@ -4,11 +4,11 @@
 // replicates) where it first reaches that error, by linear interpolation on log–log axes. Nothing is extrapolated: a
 // baseline that never gets there, or was there before its first snapshot, gives no value, only a one-sided interval.
 
-#include <cstdint>
 #include <optional>
 #include <span>
 
 #include "experiments/statistics/curve.h"
+#include "experiments/statistics/design.h"
 #include "experiments/statistics/intervals.h"
 
 namespace ulam::statistics {
@@ -30,9 +30,9 @@ struct Speedup {
 };
 
 /// `samplerEnds` holds the last snapshot of each replicate of the sampler. Throws when the replicates of the baseline
-/// differ in their number of snapshots. The interval is the bootstrap percentile one with the tails of
-/// bootstrapTail for the smaller group.
+/// differ in their number of snapshots, or where pairs are not as many on both sides. The interval is the bootstrap
+/// percentile one with the tails of bootstrapTail for the smaller group; pairs are drawn together.
 Speedup speedup(std::span<const CurvePoint> samplerEnds, std::span<const Curve> baseline,
-                std::uint64_t seed = kResamplingSeed);
+                const Design& design = {});
 
 }  // namespace ulam::statistics

@@ -70,6 +70,9 @@ TEST_CASE("what does not fit together is refused", "[experiment]") {
     CHECK(contains(refusal("samplers.path.max_depth", 4), "beside \"film\""));
     CHECK(contains(refusal("metrics", {"psnr"}), "primary"));
     CHECK(contains(refusal("reference", "truth"), "no closed form"));
+    CHECK(contains(refusal("until", {{"max_replicates", 2}}), "at least the 3"));
+    CHECK(contains(refusal("until", {{"relative_ci", 0}}), "relative_ci"));
+    CHECK(contains(refusal("sweep", {{"until", {nullptr}}}), "whole run"));
 
     const Folder folder;
     Json both = tinyExperiment();

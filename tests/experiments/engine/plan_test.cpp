@@ -75,6 +75,23 @@ TEST_CASE("random numbers depend on seed, cell and replicate and on nothing else
     CHECK(first.high == 0x4215948c);
 }
 
+TEST_CASE("common random numbers are shared by cells and by nothing else", "[plan]") {
+    const Folder folder;
+    Json experiment = tinyExperiment();
+    experiment["common_random_numbers"] = true;
+    experiment["sweep"] = {{"budget.spp", {2, 4}}};
+    const Plan plan = planOf(folder, experiment);
+    CHECK(plan.design.paired);
+    REQUIRE(plan.cells.size() == 4);
+    std::set<std::pair<uint32_t, uint32_t>> keys;
+    for (const Cell& cell : plan.cells)
+        for (int r = 0; r < cell.task.replicates; ++r) keys.insert({cell.task.key(r).low, cell.task.key(r).high});
+    CHECK(keys.size() == 3);
+    const RandomKey reference = plan.references[0].task.key(0);
+    CHECK_FALSE(keys.contains({reference.low, reference.high}));
+    CHECK(plan.cells[0].task.hash() != planOf(folder, tinyExperiment()).cells[0].task.hash());
+}
+
 TEST_CASE("blocks hold one replicate of every cell, in changing order", "[plan]") {
     const Folder folder;
     Json experiment = tinyExperiment();

@@ -196,7 +196,7 @@ TEST_CASE("a signal stops a run and keeps what is finished", "[run]") {
     const Folder folder;
     Json experiment = tinyExperiment();
     experiment["budget"] = {{"spp", 64}};
-    const Plan plan = planOf(folder, experiment);
+    Plan plan = planOf(folder, experiment);
     runIn(folder, plan);
     fs::remove(resultOf(folder, "wall-bdpt", 1));
     static const std::atomic<bool> stop = true;
@@ -293,13 +293,4 @@ TEST_CASE("the number of threads does not change an image", "[run]") {
         hashes.insert(JsonDocument::fromFile(replicateFolder(out, 0) / "result.json").json()["image_sha256"]);
     }
     CHECK(hashes.size() == 1);
-}
-
-TEST_CASE("the estimate of a time budget is the budget", "[run]") {
-    const Folder folder;
-    Json experiment = tinyExperiment();
-    experiment["budget"] = {{"time", 7}};
-    CHECK(estimateSeconds(planOf(folder, experiment).cells[0].task, 1) == 7);
-    experiment["budget"] = {{"spp", 4}};
-    CHECK(estimateSeconds(planOf(folder, experiment).cells[0].task, 1) < 5);
 }

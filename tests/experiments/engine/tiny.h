@@ -61,7 +61,8 @@ inline Plan planOf(const Folder& folder, const Json& experiment) {
     return makePlan(JsonDocument::fromFile(file), file);
 }
 
-inline RunOutcome runIn(const Folder& folder, const Plan& plan, bool keepGoing = false) {
+/// Of a copy of the plan, which does not tell of replicates that were added.
+inline RunOutcome runIn(const Folder& folder, Plan plan, bool keepGoing = false) {
     static const std::atomic<bool> never = false;
     Progress progress(true);
     return runPlan(plan, {folder / "run", 1, keepGoing}, never, progress);

@@ -130,3 +130,54 @@ TEST_CASE("the smallest attainable adjusted p of a plan") {
     CHECK(mixed[0] == Approx(0.1));
     CHECK(mixed[1] == Approx(4.0 / 12870));
 }
+
+TEST_CASE("looking several times names a sampler a winner over itself in at most 6.5 % of experiments") {
+    // Replicates are added until a comparison is decided, or up to 9: the worst that stopping can do.
+    const bool paired = GENERATE(false, true);
+    CAPTURE(paired);
+    const Design design{.paired = paired, .looks = 3};
+    const double wrong = frequency(500, 48, [&](PhiloxStream& random) {
+        std::vector<double> a, b;
+        for (const std::size_t n : {7, 8, 9}) {
+            for (const double x : lognormalErrors(n - a.size(), 0.4, random)) a.push_back(x);
+            for (const double x : lognormalErrors(n - b.size(), 0.4, random)) b.push_back(x);
+            std::vector<Comparison> one{compare(a, b, 0, design)};
+            decide(one, design.looks);
+            if (anyWinner(one)) return true;
+        }
+        return false;
+    });
+    CHECK(wrong <= 0.065);
+    CHECK(wrong >= 0.005);
+}
+
+TEST_CASE("each look has its share of the level") {
+    PhiloxStream random(49);
+    const std::vector<double> a = scaled(lognormalErrors(5, 0.1, random), 0.1), b = lognormalErrors(5, 0.1, random);
+    std::vector<Comparison> once{compare(a, b)}, often{compare(a, b, 0, {.looks = 8})};
+    decide(once);
+    decide(often, 8);
+    CHECK(often[0].pAdjusted == Approx(8 * once[0].pAdjusted));
+    CHECK(once[0].verdict == Verdict::Better);
+    CHECK(often[0].verdict == Verdict::Undecided);
+    CHECK(often[0].ci95->low < once[0].ci95->low);
+    CHECK(once[0].detectableRatio);
+    CHECK_FALSE(often[0].detectableRatio);  // 2 of 252 splits are more than 0.05 / 8
+}
+
+TEST_CASE("comparisons of pairs use the pairs") {
+    PhiloxStream random(50);
+    const std::vector<double> baseline = lognormalErrors(8, 0.5, random);
+    std::vector<double> sampler;
+    for (const double x : baseline) sampler.push_back(0.9 * x * lognormalErrors(1, 0.01, random)[0]);
+    std::vector<Comparison> paired{compare(sampler, baseline, 0, {.paired = true})}, free{compare(sampler, baseline)};
+    decide(paired);
+    decide(free);
+    CHECK(paired[0].verdict == Verdict::Better);
+    CHECK(paired[0].p == Approx(2.0 / 256));
+    CHECK(*paired[0].detectableRatio > 0.95);
+    CHECK(free[0].verdict == Verdict::Undecided);
+    CHECK(*free[0].detectableRatio < 0.7);
+    const std::vector<std::pair<std::size_t, std::size_t>> eight{{8, 8}};
+    CHECK(smallestAdjustedP(eight, {.paired = true, .looks = 3})[0] == Approx(3 * 2.0 / 256));
+}

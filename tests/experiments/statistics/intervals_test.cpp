@@ -3,6 +3,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/base/error.h"
 #include "experiments/statistics/moments.h"
 #include "tests/experiments/statistics/simulation.h"
 #include "tests/support/catch.h"
@@ -19,7 +20,7 @@ bool covers(const Interval& interval, double truth) {
 
 double coverageOfMean(std::size_t n, double sigma, int trials) {
     return frequency(trials, 101, [&](PhiloxStream& random) {
-        return covers(meanInterval(lognormalErrors(n, sigma, random))->ci95, 1);
+        return covers(meanInterval(lognormalErrors(n, sigma, random))->interval, 1);
     });
 }
 
@@ -80,16 +81,16 @@ TEST_CASE("the interval of a mean matches hand calculation") {
     const MeanInterval interval = *meanInterval(x);
     const double factor = std::exp(4.302653 / (2 * std::sqrt(3.0)));
     CHECK(interval.method == IntervalMethod::LogT);
-    CHECK(interval.ci95.low == Approx(2 / factor).epsilon(1e-6));
-    CHECK(interval.ci95.high == Approx(2 * factor).epsilon(1e-6));
+    CHECK(interval.interval.low == Approx(2 / factor).epsilon(1e-6));
+    CHECK(interval.interval.high == Approx(2 * factor).epsilon(1e-6));
 }
 
 TEST_CASE("errors at or below zero fall back to the linear scale and say so") {
     const std::vector<double> x{-1, 2, 5};  // mean 2, s 3
     const MeanInterval interval = *meanInterval(x);
     CHECK(interval.method == IntervalMethod::LinearT);
-    CHECK(interval.ci95.low == Approx(2 - 4.302653 * std::sqrt(3.0)).epsilon(1e-6));
-    CHECK(interval.ci95.high == Approx(2 + 4.302653 * std::sqrt(3.0)).epsilon(1e-6));
+    CHECK(interval.interval.low == Approx(2 - 4.302653 * std::sqrt(3.0)).epsilon(1e-6));
+    CHECK(interval.interval.high == Approx(2 + 4.302653 * std::sqrt(3.0)).epsilon(1e-6));
     CHECK_FALSE(ratioInterval(x, std::vector<double>{1, 2, 3}));
 }
 
@@ -103,8 +104,8 @@ TEST_CASE("one replicate has no interval") {
 TEST_CASE("equal errors have an interval of no width") {
     for (std::size_t n : {8, 40}) {
         const std::vector<double> x(n, 0.1);
-        CHECK(meanInterval(x)->ci95.low == Approx(0.1).epsilon(1e-12));
-        CHECK(meanInterval(x)->ci95.high == Approx(0.1).epsilon(1e-12));
+        CHECK(meanInterval(x)->interval.low == Approx(0.1).epsilon(1e-12));
+        CHECK(meanInterval(x)->interval.high == Approx(0.1).epsilon(1e-12));
         CHECK(ratioInterval(x, x)->low == Approx(1).epsilon(1e-12));
         CHECK(ratioInterval(x, x)->high == Approx(1).epsilon(1e-12));
     }
@@ -117,7 +118,7 @@ TEST_CASE("intervals scale with the errors and ratio intervals invert") {
         const std::vector<double> b = lognormalErrors(n, 0.2, random);
         std::vector<double> scaled = a;
         for (double& x : scaled) x *= 1e-9;
-        CHECK(meanInterval(scaled)->ci95.low == Approx(1e-9 * meanInterval(a)->ci95.low));
+        CHECK(meanInterval(scaled)->interval.low == Approx(1e-9 * meanInterval(a)->interval.low));
         CHECK(ratioInterval(scaled, b)->high == Approx(1e-9 * ratioInterval(a, b)->high));
         // Other resamples serve the inverse, so that the bootstrap agrees up to their noise only.
         CHECK(ratioInterval(b, a)->low == Approx(1 / ratioInterval(a, b)->high).epsilon(0.02));
@@ -142,13 +143,13 @@ TEST_CASE("BCa is as asymmetric as theory wants") {
     // The middle of one interval has a resampling noise of 0.025 standard errors, that of 20 seeds 0.006.
     double shift = 0;
     for (std::uint64_t seed = 0; seed < 20; ++seed) {
-        const Interval interval = meanInterval(x, seed)->ci95;
+        const Interval interval = meanInterval(x, kConfidence, seed)->interval;
         shift += ((interval.low + interval.high) / 2 - centre) / std::sqrt(second / n) / 20;
     }
     CHECK(shift == Approx(skewness * (2 * z * z + 1) / (6 * std::sqrt(60.0))).epsilon(0.2));
 
     // BCa respects transformations: with one side constant the ratio's interval is that of the other mean.
-    const Interval interval = meanInterval(x)->ci95;
+    const Interval interval = meanInterval(x)->interval;
     const std::vector<double> constant(n, 2.0);
     const Interval numerator = *ratioInterval(x, constant);
     CHECK(numerator.low == Approx(interval.low / 2).epsilon(0.01));
@@ -162,6 +163,44 @@ TEST_CASE("the bootstrap repeats itself and depends on its seed") {
     PhiloxStream random(4);
     const std::vector<double> x = lognormalErrors(40, 0.4, random);
     CHECK(meanInterval(x)->method == IntervalMethod::Bca);
-    CHECK(meanInterval(x, 5)->ci95.low == meanInterval(x, 5)->ci95.low);
-    CHECK(meanInterval(x, 5)->ci95.low != meanInterval(x, 6)->ci95.low);
+    CHECK(meanInterval(x, kConfidence, 5)->interval.low == meanInterval(x, kConfidence, 5)->interval.low);
+    CHECK(meanInterval(x, kConfidence, 5)->interval.low != meanInterval(x, kConfidence, 6)->interval.low);
+}
+
+TEST_CASE("intervals of pairs cover the ratio in 93 to 97 %") {
+    const auto [pairs, shared, own] =
+        GENERATE(table<std::size_t, double, double>({{8, 0.4, 0.2}, {16, 0.4, 0.2}, {40, 0.4, 0.3}, {8, 0, 0.4}}));
+    CAPTURE(pairs, shared, own);
+    const double covered = frequency(pairs < 32 ? 4000 : 500, 27, [&, n = pairs, s = shared, o = own](PhiloxStream& random) {
+        const std::vector<double> common = lognormalErrors(n, s, random);
+        std::vector<double> a = lognormalErrors(n, o, random), b = lognormalErrors(n, o, random);
+        for (std::size_t i = 0; i < n; ++i) a[i] *= 0.5 * common[i], b[i] *= common[i];
+        return covers(*pairedRatioInterval(a, b), 0.5);
+    });
+    CHECK(covered >= 0.93);
+    CHECK(covered <= 0.975);
+}
+
+TEST_CASE("intervals of pairs that go together are narrower") {
+    const std::vector<double> a{1, 2, 3, 4}, b{2, 4.1, 5.9, 8};
+    const auto paired = *pairedRatioInterval(a, b), free = *ratioInterval(a, b);
+    CHECK(paired.high - paired.low < 0.1 * (free.high - free.low));
+    CHECK(paired.low < 0.5);
+    CHECK(paired.high > 0.5);
+    CHECK_THROWS_AS(pairedRatioInterval(a, std::vector<double>{1, 2}), ulam::Error);
+}
+
+TEST_CASE("more confidence makes intervals wider") {
+    PhiloxStream random(28);
+    for (const std::size_t n : {std::size_t(8), std::size_t(40)}) {
+        const std::vector<double> x = lognormalErrors(n, 0.3, random), y = lognormalErrors(n, 0.3, random);
+        CHECK(meanInterval(x, 0.99)->interval.low < meanInterval(x)->interval.low);
+        CHECK(ratioInterval(x, y, 0.99)->high > ratioInterval(x, y)->high);
+        CHECK(pairedRatioInterval(x, y, 0.99)->high > pairedRatioInterval(x, y)->high);
+        const double covered = frequency(n < 32 ? 4000 : 400, 29, [&](PhiloxStream& r) {
+            return covers(*ratioInterval(lognormalErrors(n, 0.4, r), lognormalErrors(n, 0.4, r), 0.99), 1);
+        });
+        CHECK(covered >= 0.98);
+        CHECK(covered <= 0.998);
+    }
 }

@@ -1,0 +1,16 @@
+#pragma once
+// Adding replicates until an experiment has its answer ("until"). Each look at the errors has its share of the level
+// (statistics/design.h), so that it does not matter when and why it stops.
+
+#include <set>
+
+#include "experiments/engine/cell_errors.h"
+
+namespace ulam {
+
+/// Doubles the replicates, up to the most, of the cells that need more: those of comparisons that are neither decided nor
+/// known to the wanted width, and of cells without a comparison whose mean error is not. What a poor reference keeps
+/// undecided gets none, nor do cells `without` a reference (indices into Plan::references). Returns how many there are more.
+int addReplicates(Plan& plan, const std::filesystem::path& runDir, const std::set<std::size_t>& without = {});
+
+}  // namespace ulam

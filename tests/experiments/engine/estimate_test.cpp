@@ -1,0 +1,64 @@
+#include "experiments/engine/estimate.h"
+
+#include "experiments/engine/replicate.h"
+#include "tests/experiments/engine/tiny.h"
+#include "tests/support/catch.h"
+
+using namespace ulam;
+using namespace ulam::tests;
+
+namespace {
+
+double bytesBelow(const std::filesystem::path& folder) {
+    double bytes = 0;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
+        if (entry.is_regular_file()) bytes += double(entry.file_size());
+    return bytes;
+}
+
+}  // namespace
+
+TEST_CASE("the estimate of a time budget is the budget", "[estimate]") {
+    const Folder folder;
+    Json experiment = tinyExperiment();
+    experiment["budget"] = {{"time", 7}};
+    CHECK(estimateReplicate(planOf(folder, experiment).cells[0].task, 1).seconds == 7);
+    experiment["budget"] = {{"time", 7}, {"spp", 1}};
+    CHECK(estimateReplicate(planOf(folder, experiment).cells[0].task, 1).seconds < 1);
+}
+
+TEST_CASE("replicates take the time and the space that was estimated", "[estimate]") {
+    const Folder folder;
+    Json experiment = tinyExperiment();
+    experiment["samplers"] = {{"bdpt", {{"type", "bdpt"}}}, {"mlt", {{"type", "mlt"}}}};
+    experiment["baseline"] = "bdpt";
+    experiment["budget"] = {{"spp", 6000}};
+    experiment["snapshots"] = 3;
+    const Plan plan = planOf(folder, experiment);
+    static const std::atomic<bool> never = false;
+    for (const Cell& cell : plan.cells) {
+        CAPTURE(cell.task.name);
+        const Estimate estimate = estimateReplicate(cell.task, 1);
+        REQUIRE(renderReplicate(cell.task, 0, folder / cell.task.name, 1, never, {}));
+        const Json result = JsonDocument::fromFile(folder / (cell.task.name + "/r000/result.json")).root().json();
+        // Other work on the machine changes its speed: a wrong model is wrong by more.
+        CHECK(estimate.seconds == Approx(result["wall_seconds"].get<double>()).epsilon(0.5));
+        CHECK(estimate.bytes == Approx(bytesBelow(folder / cell.task.name)).epsilon(0.15));
+    }
+}
+
+TEST_CASE("of many cells some are tried", "[estimate]") {
+    const Folder folder;
+    Json experiment = tinyExperiment();
+    experiment["snapshots"] = 0;
+    experiment["budget"] = {{"spp", 1}};
+    experiment["sweep"] = {{"budget.spp", {{"linear", {1, 150}}, {"steps", 150}}}};
+    const Plan plan = planOf(folder, experiment);
+    REQUIRE(plan.cells.size() == 300);
+    const PlanEstimate estimate = estimatePlan(plan, 1);
+    CHECK(estimate.tried <= kTriedCells + 1);
+    for (const Estimate& cell : estimate.cells) CHECK(cell.seconds > 0);
+    const Estimate total = estimate.total(plan);
+    CHECK(total.seconds > 0);
+    CHECK(total.bytes > 300 * 3 * 1000.0);
+}
