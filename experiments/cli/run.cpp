@@ -59,7 +59,7 @@ std::vector<std::string> replicateWarnings(const Plan& plan) {
 /// What is planned and what it will cost: resolved.json with estimates.
 Json plannedJson(const Plan& plan, const PlanEstimate& estimate) {
     Json planned = plan.resolved();
-    const auto note = [](Json& place, const Estimate& of, int replicates) {
+    const auto note = [](Json& place, const Cost& of, int replicates) {
         place["estimated_seconds"] = of.seconds * replicates;
         place["estimated_bytes"] = of.bytes * replicates;
     };
@@ -89,7 +89,7 @@ void printDryRun(const Plan& plan, const RunArguments& a) {
         fmt::print("cell {}  {} replicates of {}, random keys from {}, {}, {}\n", cell["cell"].get<std::string>(),
                    cell["replicates"].dump(), cell["budget"].dump(), cell["random_keys"][0].dump(),
                    durationText(cell["estimated_seconds"]), sizeText(cell["estimated_bytes"]));
-    const Estimate total = estimate.total(plan);
+    const Cost total = estimate.total(plan);
     fmt::print("{} cells, {} comparisons, about {} and {}{}\n", plan.cells.size(), plan.comparisons.size(),
                durationText(total.seconds), sizeText(total.bytes),
                estimate.tried < plan.cells.size() ? fmt::format(" (from trials of {} cells)", estimate.tried) : "");

@@ -11,6 +11,7 @@
 #include "experiments/statistics/comparison.h"
 #include "experiments/statistics/convergence.h"
 #include "experiments/statistics/decomposition.h"
+#include "experiments/statistics/error_spectrum.h"
 #include "experiments/statistics/features.h"
 #include "experiments/statistics/moments.h"
 
@@ -72,6 +73,7 @@ public:
         json["normalization_cv"] = mean("normalization") > 0 && replicates_.size() > 1
                                        ? number(statistics::coefficientOfVariation(values("normalization")))
                                        : Json(0);
+        addSpectrum();
         addConvergence();
         addMutations();
         addFeatures();
@@ -132,6 +134,28 @@ private:
         const auto parts = statistics::decompose(images, channels(reference_.image), channels(reference_.variance));
         summary_.json["variance"] = parts.variance;
         summary_.json["bias_squared"] = parts.biasSquared;
+    }
+
+    /// Of the relative errors whose mean square is relMSE without debiasing.
+    void addSpectrum() {
+        constexpr int kChannels = 3;
+        const double epsilon = findMetric("relmse").constants.front().value;
+        std::vector<std::vector<double>> values;
+        for (const Replicate& r : replicates_) {
+            for (int channel = 0; channel < kChannels; ++channel) {
+                std::vector<double>& errors = values.emplace_back();
+                for (std::size_t i = 0; i < r.image.pixels.size(); ++i) {
+                    const double x = r.image.pixels[i][channel], truth = reference_.image.pixels[i][channel];
+                    errors.push_back((x - truth) / std::sqrt(truth * truth + epsilon));
+                }
+            }
+        }
+        std::vector<statistics::ErrorImage> images;
+        for (const auto& errors : values) images.push_back({errors, reference_.image.width, reference_.image.height});
+        const auto spectrum = statistics::errorSpectrum(images, kChannels);
+        summary_.json["error_spectrum"] = {{"cycles_per_pixel", spectrum.frequencies}, {"counts", spectrum.counts},
+                                           {"density", spectrum.mean},          {"low", spectrum.low},
+                                           {"high", spectrum.high},             {"brightness", spectrum.brightness}};
     }
 
     /// Snapshots that fall into the seeding of the chains show nothing yet.

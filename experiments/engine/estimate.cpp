@@ -95,7 +95,7 @@ double bytesOf(const fs::path& folder, const Task& task, const RenderResult& tri
 
 }  // namespace
 
-Estimate estimateReplicate(const Task& whole, int threads) {
+Cost estimateReplicate(const Task& whole, int threads) {
     Task task = whole;
     task.snapshots = 0;
     const bool work = limitsWork(whole.budget);
@@ -125,12 +125,12 @@ PlanEstimate estimatePlan(const Plan& plan, int threads) {
     PlanEstimate estimate;
     estimate.cells.resize(plan.cells.size());
     const std::size_t step = (plan.cells.size() + kTriedCells - 1) / kTriedCells;
-    std::map<std::string, std::pair<Estimate, double>> sums;  // of the tried cells of a sampler, and how many
+    std::map<std::string, std::pair<Cost, double>> sums;  // of the tried cells of a sampler, and how many
     for (std::size_t c = 0; c < plan.cells.size(); ++c) {
         const Task& task = plan.cells[c].task;
         auto& [sum, count] = sums[task.sampler];
         if (c % step == 0 || count == 0) {
-            const Estimate found = estimate.cells[c] = estimateReplicate(task, threads);
+            const Cost found = estimate.cells[c] = estimateReplicate(task, threads);
             sum.seconds += found.seconds, sum.bytes += found.bytes, ++count, ++estimate.tried;
         }
     }
@@ -140,13 +140,13 @@ PlanEstimate estimatePlan(const Plan& plan, int threads) {
     }
     for (const PlannedReference& reference : plan.references) {
         const bool made = reference.spec.kind == ReferenceSpec::Kind::Sampler && !isCached(reference);
-        estimate.references.push_back(made ? estimateReplicate(reference.task, threads) : Estimate{});
+        estimate.references.push_back(made ? estimateReplicate(reference.task, threads) : Cost{});
     }
     return estimate;
 }
 
-Estimate PlanEstimate::total(const Plan& plan) const {
-    Estimate sum;
+Cost PlanEstimate::total(const Plan& plan) const {
+    Cost sum;
     for (std::size_t c = 0; c < cells.size(); ++c) {
         sum.seconds += cells[c].seconds * plan.cells[c].task.replicates;
         sum.bytes += cells[c].bytes * plan.cells[c].task.replicates;

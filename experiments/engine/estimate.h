@@ -8,25 +8,25 @@
 namespace ulam {
 
 /// Of one replicate: wall seconds of its render, and bytes of its folder.
-struct Estimate {
+struct Cost {
     double seconds = 0, bytes = 0;
 };
 
 /// By a trial of about a third of a second. A time budget is taken at its word. Of samplers with chains the seeding is
 /// extrapolated by its own plan (docs/seeding.md). How well this does: docs/experiments.md.
-Estimate estimateReplicate(const Task& task, int threads);
+Cost estimateReplicate(const Task& task, int threads);
 
 /// Of a whole plan. Beyond so many cells only some are tried, evenly spaced, and the others are taken to cost what those of
 /// the same sampler do on average.
 inline constexpr std::size_t kTriedCells = 100;
 
 struct PlanEstimate {
-    std::vector<Estimate> cells;       ///< of one replicate of each
-    std::vector<Estimate> references;  ///< of a part of each; none where it is cached or not made by a sampler
+    std::vector<Cost> cells;       ///< of one replicate of each
+    std::vector<Cost> references;  ///< of a part of each; none where it is cached or not made by a sampler
     std::size_t tried = 0;             ///< cells that were
 
     /// Of everything together. Space is that of the run's folder when it is done, without tables and report.
-    Estimate total(const Plan& plan) const;
+    Cost total(const Plan& plan) const;
 };
 PlanEstimate estimatePlan(const Plan& plan, int threads);
 

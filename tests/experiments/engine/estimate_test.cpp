@@ -38,7 +38,7 @@ TEST_CASE("replicates take the time and the space that was estimated", "[estimat
     static const std::atomic<bool> never = false;
     for (const Cell& cell : plan.cells) {
         CAPTURE(cell.task.name);
-        const Estimate estimate = estimateReplicate(cell.task, 1);
+        const Cost estimate = estimateReplicate(cell.task, 1);
         REQUIRE(renderReplicate(cell.task, 0, folder / cell.task.name, 1, never, {}));
         const Json result = JsonDocument::fromFile(folder / (cell.task.name + "/r000/result.json")).root().json();
         // Other work on the machine changes its speed: a wrong model is wrong by more.
@@ -57,8 +57,8 @@ TEST_CASE("of many cells some are tried", "[estimate]") {
     REQUIRE(plan.cells.size() == 300);
     const PlanEstimate estimate = estimatePlan(plan, 1);
     CHECK(estimate.tried <= kTriedCells + 1);
-    for (const Estimate& cell : estimate.cells) CHECK(cell.seconds > 0);
-    const Estimate total = estimate.total(plan);
+    for (const Cost& cell : estimate.cells) CHECK(cell.seconds > 0);
+    const Cost total = estimate.total(plan);
     CHECK(total.seconds > 0);
     CHECK(total.bytes > 300 * 3 * 1000.0);
 }
