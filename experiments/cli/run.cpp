@@ -2,6 +2,7 @@
 
 #include <cstdlib>
 #include <numeric>
+#include <set>
 
 #include "core/base/error.h"
 #include "core/base/file.h"
@@ -16,6 +17,7 @@
 #include "experiments/engine/result.h"
 #include "experiments/engine/signals.h"
 #include "experiments/engine/summary.h"
+#include "experiments/engine/tuning.h"
 #include "experiments/report/report.h"
 #include "experiments/statistics/comparison.h"
 
@@ -75,9 +77,28 @@ Json plannedJson(const Plan& plan, const PlanEstimate& estimate) {
     return planned;
 }
 
-void printDryRun(const Plan& plan, const RunArguments& a) {
+/// Of all rounds: each candidate is taken to cost what the sampler does as it is written.
+double tuningSeconds(const Plan& plan, const PlanEstimate& estimate, const Tuning& tuning) {
+    double whole = 0;
+    std::set<std::string> scenes;  // of a sweep one point
+    for (std::size_t c = 0; c < plan.cells.size(); ++c) {
+        const Task& task = plan.cells[c].task;
+        if (task.sampler == tuning.sampler && scenes.insert(task.scene->name).second) whole += estimate.cells[c].seconds;
+    }
+    double seconds = 0;
+    for (const TuningRound& round : tuningRounds(tuning))
+        seconds += round.fraction * double(round.candidates) * tuning.parameters.replicates * whole;
+    return seconds;
+}
+
+void printDryRun(const Plan& plan, const std::optional<Tuning>& tuning, const RunArguments& a) {
     const PlanEstimate estimate = estimatePlan(plan, *a.threads);
-    const Json planned = plannedJson(plan, estimate);
+    Json planned = plannedJson(plan, estimate);
+    if (tuning)
+        planned["tuning"] = {{"sampler", tuning->sampler},
+                             {"candidates", tuning->candidates.size()},
+                             {"rounds", tuningRounds(*tuning).size()},
+                             {"estimated_seconds", tuningSeconds(plan, estimate, *tuning)}};
     if (a.json) {
         fmt::print("{}\n", dump(planned));
         return;
@@ -93,6 +114,10 @@ void printDryRun(const Plan& plan, const RunArguments& a) {
     fmt::print("{} cells, {} comparisons, about {} and {}{}\n", plan.cells.size(), plan.comparisons.size(),
                durationText(total.seconds), sizeText(total.bytes),
                estimate.tried < plan.cells.size() ? fmt::format(" (from trials of {} cells)", estimate.tried) : "");
+    if (tuning)
+        fmt::print("before that {} is tuned: {} candidates in {} rounds, about {}\n", tuning->sampler,
+                   tuning->candidates.size(), tuningRounds(*tuning).size(),
+                   durationText(planned["tuning"]["estimated_seconds"]));
     if (plan.until)
         fmt::print("up to {} replicates of a cell until every comparison is decided or known to {:g}\n",
                    plan.until->maxReplicates, plan.until->relativeCi);
@@ -109,11 +134,14 @@ void printResults(const Json& summary, const fs::path& runDir, const RunArgument
     fmt::print("{}\n", fs::absolute(runDir / "report.html").lexically_normal().string());
 }
 
+constexpr const char* kGoOn = "finished replicates are kept: go on with --resume";
+
 void runExperiment(const RunArguments& a) {
     JsonDocument document = readExperiment(a.experiment);
     document.applyOverrides(a.assignments);
+    const std::optional<Tuning> tuning = plannedTuning(document);
     Plan plan = makePlan(document, a.experiment);
-    if (a.dryRun) return printDryRun(plan, a);
+    if (a.dryRun) return printDryRun(plan, tuning, a);
 
     RunOptions options;
     options.runDir = a.folder.empty() ? defaultFolder(plan.name, a.resume) : fs::path(a.folder);
@@ -137,11 +165,20 @@ void runExperiment(const RunArguments& a) {
             warnings.push_back(reference.scene->name + ": " + warning);
     for (const std::string& warning : warnings) progress.message("warning: " + warning);
 
+    Json tuned;
+    if (tuning) {
+        makeFolder(options.runDir / "tuning");
+        const TuningOutcome outcome = tune(document, a.experiment, *tuning, options, watchSignals(), progress);
+        if (outcome.interrupted) failIfSignalled(kGoOn);
+        plan = makePlan(outcome.experiment, a.experiment);
+        tuned = outcome.record;
+    }
     const RunOutcome outcome = runPlan(plan, options, watchSignals(), progress);
-    if (outcome.interrupted) failIfSignalled("finished replicates are kept: go on with --resume");
+    if (outcome.interrupted) failIfSignalled(kGoOn);
     if (outcome.reused > 0)
         progress.message(fmt::format("{} replicates were there already, {} are new", outcome.reused, outcome.rendered));
-    const Json summary = summarize(plan, options.runDir, outcome.failures);
+    Json summary = summarize(plan, options.runDir, outcome.failures);
+    if (tuning) summary["tuning"] = tuned;
     writeSummary(options.runDir, summary);
     writeReport(options.runDir);
     printResults(summary, options.runDir, a);

@@ -179,7 +179,7 @@ Experiment parseExperiment(const JsonNode& root, const fs::path& folder, const s
     checkName(root.find("name").value_or(root), e.name);
     e.folder = folder;
     e.film = p.film.json();
-    for (const char* key : {"film", "scenes", "sweep", "scene", "until"})
+    for (const char* key : {"film", "scenes", "sweep", "scene", "until", "tune"})
         if (const auto node = root.find(key); node && node->isNull()) node->expected("a value");
     if (!p.film.isNull() && !p.film.isObject()) p.film.expected("an object with width and height");
     e.maxDepth = p.maxDepth;

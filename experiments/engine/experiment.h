@@ -59,6 +59,19 @@ struct UntilParameters {
     }
 };
 
+/// Parameters of one sampler to try before it is compared.
+struct TuneParameters {
+    JsonNode sweep;
+    int reduction = 3, replicates = 4;
+
+    template <class V>
+    void describe(V& v) {
+        v("sweep", sweep, {.help = "the candidates: values of parameters of one sampler, as in the experiment's sweep"});
+        v("reduction", reduction, {.help = "after each round the best 1 / reduction go on, with that many times the budget", .min = 2, .max = 16});
+        v("replicates", replicates, {.help = "runs of each candidate on each scene in a round", .min = 1, .max = 1000});
+    }
+};
+
 struct ExperimentParameters {
     std::string schema, name;
     JsonNode extends, scene, scenes, film;
@@ -72,7 +85,7 @@ struct ExperimentParameters {
     bool commonRandomNumbers = false;
     int snapshots = 6;
     JsonNode metrics{Json{"relmse", "mape", "flip"}};
-    JsonNode reference, sweep;
+    JsonNode reference, tune, sweep;
 
     template <class V>
     void describe(V& v) {
@@ -98,6 +111,7 @@ struct ExperimentParameters {
         v("metrics", metrics, {.help = "error metrics; the first is primary and carries the verdict"});
         v("reference", reference,
           {.help = "\"truth\", an EXR file, or a sampler with its budget; or each of these by scene"});
+        v("tune", tune, {.help = "choose a sampler's parameters by successive halving before it is compared"});
         v("sweep", sweep, {.help = "values by path into the experiment; several paths make a grid"});
     }
 };

@@ -186,10 +186,14 @@ Json experimentSchema() {
     Json byScene = namedLike(reference("reference"));
     byScene["not"] = anyOf({{{"required", Json::array({"sampler"})}}, {{"required", Json::array({"budget"})}}, {{"required", Json::array({"image"})}}});
     refine(schema, "reference", anyOf({reference("reference"), byScene}));
-    refine(schema, "sweep",
-           {{"type", "object"},
-            {"properties", {{"zip", membersLike(reference("sweepValues"))}, {"where", conditions()}}},
-            {"additionalProperties", reference("sweepValues")}});
+    definitions["sweep"] = {{"type", "object"},
+                            {"properties", {{"zip", membersLike(reference("sweepValues"))}, {"where", conditions()}}},
+                            {"additionalProperties", reference("sweepValues")}};
+    refine(schema, "sweep", reference("sweep"));
+    Json tune = jsonSchema(parameterInfo<TuneParameters>());
+    refine(tune, "sweep", reference("sweep"));
+    tune["required"] = Json::array({"sweep"});
+    refine(schema, "tune", tune);
     const Json file = {{"type", "string"}, {"pattern", "^[^/]+$"}};
     refine(schema, "extends", anyOf({file, {{"type", "array"}, {"items", file}}}));
     // What a file leaves out the ones that it extends may have.

@@ -19,8 +19,8 @@ namespace {
 
 constexpr std::size_t kMostPoints = 100'000;
 /// What a run has once: a point cannot have its own. Reference, replicates and all that cells are made of can differ.
-constexpr std::array<std::string_view, 8> kWholeRun{"$schema", "extends", "name",  "baseline",
-                                                    "seed",    "metrics", "until", "common_random_numbers"};
+constexpr std::array<std::string_view, 9> kWholeRun{"$schema", "extends", "name", "baseline",             "seed",
+                                                    "metrics", "until",   "tune", "common_random_numbers"};
 
 /// Points that exclude each other: the values of one key, or the pairs of a zip.
 using Axis = std::vector<SweepPoint>;

@@ -39,7 +39,7 @@ BASE = {
 VALUES = [0, 1, -1, 2, 0.5, 1e9, 1e30, "x", "", True, None, [], {}, [1], [0, 1, 2], {"type": "x"}, ["relmse"]]
 # What a schema cannot know: names that stand elsewhere in the file, which files there are, what a sweep's values are for.
 BEYOND_SCHEMAS = ("unknown sampler of this experiment", "has no chains", "cannot read", "does not exist", "unknown scene",
-                  "at least the", "intervals need", " at sweep ", " twice ", "no point of the sweep", "(/reference/sampler); Known")
+                  "at least the", "intervals need", "no parameter of a sampler", "two candidates", " at sweep ", " twice ", "no point of the sweep", "(/reference/sampler); Known")
 
 
 def changed(document, path, value):
@@ -66,6 +66,7 @@ def experiments(schema):
     places = [((name,), s) for name, s in schema["properties"].items()]
     for name, s in definitions["budget"]["properties"].items():
         places += [(("budget", name), s), (("reference", "budget", name), s)]
+    places += [(("tune", name), s) for name, s in schema["properties"]["tune"]["properties"].items()]
     places += [(("until", name), s) for name, s in schema["properties"]["until"]["properties"].items()]
     for form in definitions["reference"]["anyOf"][1:]:
         places += [(("reference", name), s) for name, s in form["properties"].items()]
