@@ -1,5 +1,7 @@
 // The summary as tables: one row a cell and metric (CSV), one a cell (Markdown, LaTeX).
 
+#include <regex>
+
 #include "experiments/engine/summary.h"
 
 namespace ulam {
@@ -31,6 +33,14 @@ std::string latexText(const std::string& plain) {
         safe += c;
     }
     return safe;
+}
+
+/// 1.2e-05 as a power of ten, and ∞.
+std::string latexNumbers(const std::string& plain) {
+    static const std::regex exponent("([0-9.]+)e([+-]?)[+0]*([0-9]+)"), infinity("∞");
+    std::string set = std::regex_replace(plain, exponent, "$$$1\\cdot10^{$2$3}$$");
+    for (auto at = set.find("{+"); at != set.npos; at = set.find("{+")) set.erase(at + 1, 1);
+    return std::regex_replace(set, infinity, "$$\\infty$$");
 }
 
 /// "2.31 (1.9–2.8)" of the comparison in which a cell is judged; empty for baselines.
@@ -110,13 +120,11 @@ std::string summaryLatex(const Json& summary) {
         std::string sampler = text(cell["sampler"]);
         for (const auto& [path, value] : cell["sweep"].items())
             sampler += fmt::format(", {} {}", path.substr(path.find_last_of('.') + 1), text(value));
-        std::string ratio = v.ratio;
-        if (const auto infinity = ratio.find("∞"); infinity != ratio.npos)
-            ratio.replace(infinity, std::string_view("∞").size(), "$\\infty$");
         const Json& error = cell["metrics"][metric];
         tex +=
             fmt::format("{} & {} & {} & {} & {} & {} & {} \\\\\n", latexText(text(cell["scene"])), latexText(sampler),
-                        text(error["mean"]), intervalText(error["ci95"], "--"), ratio, v.p, v.verdict);
+                        latexNumbers(text(error["mean"])), latexNumbers(intervalText(error["ci95"], "--")),
+                        latexNumbers(v.ratio), latexNumbers(v.p), v.verdict);
     }
     return tex + "\\bottomrule\n\\end{tabular}\n";
 }

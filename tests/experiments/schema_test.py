@@ -27,19 +27,19 @@ ULAM = os.path.abspath(os.environ.get("ULAM", "build/release/ulam"))
 FULL = os.environ.get("ULAM_TEST_LEVEL") == "full"
 QUICK_CASES = 300
 
-# Budgets of time only: nothing has to be rendered to plan them.
+# Little time: planning tries each cell.
 BASE = {
     "scene": {"type": "sphere_light_center"},
     "film": {"width": 16, "height": 16},
     "samplers": {"mlt": {"type": "mlt"}, "other": {"type": "pssmlt"}},
     "baseline": "other",
-    "budget": {"time": 1},
-    "reference": {"sampler": "mlt", "budget": {"time": 2}},
+    "budget": {"time": 0.001},
+    "reference": {"sampler": "mlt", "budget": {"time": 0.002}},
 }
 VALUES = [0, 1, -1, 2, 0.5, 1e9, 1e30, "x", "", True, None, [], {}, [1], [0, 1, 2], {"type": "x"}, ["relmse"]]
 # What a schema cannot know: names that stand elsewhere in the file, which files there are, what a sweep's values are for.
 BEYOND_SCHEMAS = ("unknown sampler of this experiment", "has no chains", "cannot read", "does not exist", "unknown scene",
-                  "at least the", "intervals need", "no parameter of a sampler", "two candidates", " at sweep ", " twice ", "no point of the sweep", "(/reference/sampler); Known")
+                  "at least the", "intervals need", "needs a scene with features", "no parameter of a sampler", "two candidates", " at sweep ", " twice ", "no point of the sweep", "(/reference/sampler); Known")
 
 
 def changed(document, path, value):

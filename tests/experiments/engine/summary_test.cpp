@@ -166,3 +166,15 @@ TEST_CASE("tables have a row for each cell", "[summary]") {
     for (const char* file : {"summary.json", "summary.csv", "summary.md", "summary.tex"})
         CHECK(fs::exists(folder / "run" / file));
 }
+
+TEST_CASE("LaTeX gets powers of ten and infinity", "[summary]") {
+    const Folder folder;
+    Json summary = summaryOf(folder, tinyExperiment());
+    Json& comparison = summary["comparisons"][0];
+    comparison["p_adjusted"] = 1.2e-5;
+    comparison["ratio"] = 3.4e20;
+    comparison["ci95"] = Json::array({1.0, nullptr});
+    const std::string tex = summaryLatex(summary);
+    CHECK(contains(tex, "$1.2\\cdot10^{-5}$"));
+    CHECK(contains(tex, "$3.4\\cdot10^{20}$ (1--$\\infty$)"));
+}
