@@ -226,7 +226,6 @@ std::string makePage(const fs::path& runDir, const Json& summary) {
                                   {"STYLE", page::kStyle},
                                   {"DATA", json},
                                   {"IMAGES", pictures.elements()},
-                                  {"CHART", page::kChart},
                                   {"SCRIPT", page::kScript}});
 }
 

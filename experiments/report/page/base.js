@@ -12,7 +12,7 @@ function setAttributes(node, attributes) {
     for (const [name, value] of Object.entries(attributes)) {
         if (value === null || value === undefined || value === false) continue;
         if (name.startsWith("on")) node.addEventListener(name.slice(2), value);
-        else node.setAttribute(name, value === true ? "" : value);
+        else node.setAttribute(name, value === true ? "" : typeof value === "number" ? Number(value.toFixed(3)) : value);
     }
     return node;
 }
@@ -86,7 +86,8 @@ function interval(ci, format = number) {
 const slopeText = (x) => (isNumber(x) ? x.toFixed(2).replace("-", "−") : kDash);
 const pValue = (p) => (!isNumber(p) ? kDash : p >= 0.9995 ? "1" : p < 0.001 ? number(p, 2) : p.toFixed(3));
 const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
-const isDark = () => matchMedia("(prefers-color-scheme: dark)").matches;
+const isDark = () =>
+    matchMedia("(prefers-color-scheme: dark)").matches && !document.documentElement.classList.contains("paper");
 
 const tooltip = {
     show(content, x, y) {
@@ -107,6 +108,34 @@ function withTooltip(node, content) {
     node.addEventListener("pointerleave", () => tooltip.hide());
     return node;
 }
+
+/// A figure whose items the arrow keys read: `step(item, dx, dy)` is the neighbour of an item, `show(item)` marks it and
+/// returns [content of the tooltip, element to put it beside], `hide` takes the mark away.
+function readByKeys(root, { first, step, show, hide }) {
+    let item = first;
+    const read = () => {
+        const [content, element] = show(item),
+            box = element.getBoundingClientRect();
+        tooltip.show(content, box.right, box.bottom);
+    };
+    root.setAttribute("tabindex", 0);
+    root.addEventListener("focus", () => {
+        if (root.matches(":focus-visible")) read();
+    });
+    root.addEventListener("blur", () => {
+        hide();
+        tooltip.hide();
+    });
+    root.addEventListener("keydown", (e) => {
+        const direction = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[e.key];
+        if (!direction) return;
+        e.preventDefault();
+        item = step(item, ...direction);
+        read();
+    });
+}
+
+const line = (text) => el("div", {}, text);
 
 function section(id, title, lead, ...children) {
     return el(

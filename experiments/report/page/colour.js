@@ -62,7 +62,6 @@ const kSamplerColours = {
     light: ["#0072b2", "#d55e00", "#009e73", "#aa4f80", "#b97a00", "#3a9bd1", "#555555"],
     dark: ["#56b4e9", "#ff8a3d", "#2bc59a", "#e08fc0", "#e69f00", "#9fd4f5", "#bbbbbb"],
 };
-const kPointStyles = ["circle", "rectRot", "triangle", "rect", "star", "crossRot", "cross"];
 const samplerColour = (index) => {
     const colours = kSamplerColours[isDark() ? "dark" : "light"];
     return colours[index % colours.length];

@@ -22,7 +22,6 @@ function holeMap(grid, { name, colour, describe, mark }) {
         class: "hole-map",
         viewBox: `0 0 ${grid.columns} ${grid.rows}`,
         role: "img",
-        tabindex: 0,
         "aria-label": `${name}, ${grid.rows} × ${grid.columns} holes; arrow keys read them`,
     });
     const squares = new Map();
@@ -52,33 +51,20 @@ function holeMap(grid, { name, colour, describe, mark }) {
     }
     const cursor = svg("rect", { class: "cursor", width: 1, height: 1, visibility: "hidden" });
     root.append(cursor);
-    let at = [0, 0];
-    const read = () => {
-        const found = squares.get(at.join(","));
-        if (!found) return;
-        setAttributes(cursor, { x: at[1], y: at[0], visibility: "visible" });
-        const box = found.square.getBoundingClientRect();
-        tooltip.show(describe(found.hole), box.right, box.bottom);
-    };
-    root.addEventListener("focus", () => {
-        if (root.matches(":focus-visible")) read();
-    });
-    root.addEventListener("blur", () => {
-        cursor.setAttribute("visibility", "hidden");
-        tooltip.hide();
-    });
-    root.addEventListener("keydown", (e) => {
-        const step = { ArrowLeft: [0, -1], ArrowRight: [0, 1], ArrowUp: [-1, 0], ArrowDown: [1, 0] }[e.key];
-        if (!step) return;
-        e.preventDefault();
-        at = [clamp(at[0] + step[0], 0, grid.rows - 1), clamp(at[1] + step[1], 0, grid.columns - 1)];
-        read();
+    readByKeys(root, {
+        first: [0, 0],
+        step: ([row, column], dx, dy) => [clamp(row + dy, 0, grid.rows - 1), clamp(column + dx, 0, grid.columns - 1)],
+        show: ([row, column]) => {
+            setAttributes(cursor, { x: column, y: row, visibility: "visible" });
+            const hole = squares.get(`${row},${column}`)?.hole;
+            return [hole ? describe(hole) : "no hole", cursor];
+        },
+        hide: () => cursor.setAttribute("visibility", "hidden"),
     });
     return root;
 }
 
 const holeTitle = (hole) => el("b", {}, `row ${hole.row + 1}, column ${hole.column + 1}`);
-const line = (text) => el("div", {}, text);
 
 function describeHole(hole) {
     return [

@@ -26,6 +26,7 @@ function render() {
     const name = summary.name ?? data.experiment?.name ?? "run";
     const sections = [
         verdictSection(),
+        sweepSection(),
         cellsSection(),
         convergenceSection(),
         imagesSection(),

@@ -35,7 +35,7 @@ function outcomeBar(shares, reasons) {
     const bar = el("div", {
         class: "outcome-bar",
         role: "img",
-        "aria-label": shares.map(([name, share]) => `${name} ${percent(share)}`).join(", "),
+        "aria-label": shares.map(([name, share]) => `${name} ${percent(share)}`).join(", ") || "no proposals",
     });
     for (const [name, share] of shares)
         bar.append(

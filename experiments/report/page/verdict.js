@@ -75,16 +75,6 @@ function forestRow(comparison, scale) {
     return root;
 }
 
-/// Values 1, 2 and 5 times powers of ten within [lo, hi], thinned to at most `most`.
-function logTicks(lo, hi, most = 7) {
-    const ticks = [];
-    for (let e = Math.floor(Math.log10(lo)); e <= Math.ceil(Math.log10(hi)); ++e)
-        for (const m of [1, 2, 5]) if (m * 10 ** e >= lo && m * 10 ** e <= hi) ticks.push(m * 10 ** e);
-    return ticks.length <= most
-        ? ticks
-        : ticks.filter((t) => Math.abs(Math.log10(t) - Math.round(Math.log10(t))) < 1e-9);
-}
-
 function forestAxis(scale) {
     const root = svg(
         "svg",

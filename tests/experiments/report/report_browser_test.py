@@ -5,163 +5,13 @@ Without an argument the report is that of the made-up run of report_test.cpp, wh
 """
 
 import functools
-import http.client
 import json
-import os
 import pathlib
 import re
-import shutil
-import subprocess
 import sys
 import tempfile
 
-ELEMENT = "element-6066-11e4-a52e-4f735466cecf"  # the name WebDriver gives to references
-ENTER, TAB, LEFT, UP, RIGHT, DOWN = "\ue007", "\ue004", "\ue012", "\ue013", "\ue014", "\ue015"
-
-
-class Browser:
-    """A WebDriver session (W3C) with chromedriver."""
-
-    def __init__(self):
-        driver = shutil.which("chromedriver")
-        browser = shutil.which("chromium") or shutil.which("google-chrome")
-        if not driver or not browser:
-            sys.exit("report_browser_test: chromium and chromedriver are needed")
-        self.process = subprocess.Popen(
-            [driver, "--port=0"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
-        )
-        for line in self.process.stdout:
-            if found := re.search(r"started successfully on port (\d+)", line):
-                self.port = int(found[1])
-                break
-        options = {
-            "binary": browser,
-            "args": [
-                "--headless=new",
-                "--no-sandbox",
-                "--disable-gpu",
-                "--disable-dev-shm-usage",
-                "--window-size=1280,900",
-            ],
-        }
-        self.session = ""
-        self.session = (
-            "/session/"
-            + self.call(
-                "POST",
-                "/session",
-                {
-                    "capabilities": {
-                        "alwaysMatch": {
-                            "goog:chromeOptions": options,
-                            "goog:loggingPrefs": {"browser": "ALL", "performance": "ALL"},
-                        }
-                    }
-                },
-            )["sessionId"]
-        )
-
-    def call(self, method, path, body=None):
-        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=120)
-        connection.request(method, self.session + path, None if body is None else json.dumps(body))
-        value = json.loads(connection.getresponse().read())["value"]
-        if isinstance(value, dict) and "error" in value:
-            raise RuntimeError(f"{value['error']}: {value['message']}")
-        return value
-
-    def open(self, path):
-        self.call("POST", "/url", {"url": path.as_uri()})
-        self.settle()
-
-    def settle(self):
-        """Waits until two frames are drawn: charts are made in one, observers answer in the next."""
-        self.call(
-            "POST",
-            "/execute/async",
-            {
-                "script": "const done = arguments[0];"
-                "requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(done, 30)))",
-                "args": [],
-            },
-        )
-
-    def run(self, script, *arguments):
-        return self.call("POST", "/execute/sync", {"script": script, "args": list(arguments)})
-
-    def press(self, *keys):
-        actions = [{"type": kind, "value": key} for key in keys for kind in ("keyDown", "keyUp")]
-        self.call("POST", "/actions", {"actions": [{"type": "key", "id": "keyboard", "actions": actions}]})
-        self.settle()
-
-    def focus(self, selector):
-        self.run("document.querySelector(arguments[0]).focus()", selector)
-
-    def click(self, selector):
-        element = self.call("POST", "/element", {"using": "css selector", "value": selector})[ELEMENT]
-        self.call("POST", f"/element/{element}/click", {})
-        self.settle()
-
-    def drag(self, selector, dx, dy, grip=None):
-        """Drags from the middle of an element, or from `grip`, pixels from its upper left corner."""
-        x, y = self.run(
-            """const node = document.querySelector(arguments[0]), grip = arguments[1];
-            node.scrollIntoView({ block: "center", behavior: "instant" });
-            const box = node.getBoundingClientRect();
-            return grip ? [grip[0] - box.width / 2, grip[1] - box.height / 2].map(Math.round) : [0, 0]""",
-            selector,
-            grip,
-        )
-        element = self.call("POST", "/element", {"using": "css selector", "value": selector})
-        self.call(
-            "POST",
-            "/actions",
-            {
-                "actions": [
-                    {
-                        "type": "pointer",
-                        "id": "mouse",
-                        "actions": [
-                            {"type": "pointerMove", "origin": element, "x": x, "y": y},
-                            {"type": "pointerDown", "button": 0},
-                            {"type": "pointerMove", "origin": "pointer", "x": dx, "y": dy},
-                            {"type": "pointerUp", "button": 0},
-                        ],
-                    }
-                ]
-            },
-        )
-        self.settle()
-
-    def media(self, scheme):
-        self.call(
-            "POST",
-            "/goog/cdp/execute",
-            {
-                "cmd": "Emulation.setEmulatedMedia",
-                "params": {"features": [{"name": "prefers-color-scheme", "value": scheme}]},
-            },
-        )
-        self.settle()
-
-    def pixels(self, selector):
-        """The pixels of the first such canvas, as a string to compare."""
-        return self.run("return document.querySelector(arguments[0]).toDataURL()", selector)
-
-    def log(self, kind):
-        return self.call("POST", "/se/log", {"type": kind})
-
-    def close(self):
-        try:
-            self.call("DELETE", "")
-        finally:
-            self.process.terminate()
-            self.process.wait()
-
-
-def check(condition, message):
-    if not condition:
-        raise AssertionError(message)
-
+from browser import DOWN, ENTER, LEFT, RIGHT, UP, check, complaints, data_of, report, run_tests, with_data
 
 VIEWER = "#viewer-scene-0"
 STAGE, EXPOSURE = f"{VIEWER} .stage", f"{VIEWER} .exposure"
@@ -170,8 +20,8 @@ STAGE, EXPOSURE = f"{VIEWER} .stage", f"{VIEWER} .exposure"
 def loads_without_errors(browser):
     for name in ("verdict", "cells", "convergence", "images", "mutations", "holes", "caught", "ledger", "provenance"):
         check(browser.run("return document.getElementById(arguments[0]) !== null", name), f"no section {name}")
-    complaints = [entry["message"] for entry in browser.log("browser")]
-    check(not complaints, f"the console says {complaints}")
+    said = complaints(browser)
+    check(not said, f"the console says {said}")
 
 
 def asks_for_nothing(browser):
@@ -183,13 +33,18 @@ def asks_for_nothing(browser):
 
 
 def draws_every_chart(browser):
-    blank = browser.run("""return [...document.querySelectorAll('.chart canvas')].filter((canvas) => {
-        const empty = document.createElement('canvas');
-        Object.assign(empty, { width: canvas.width, height: canvas.height });
-        return canvas.width < 50 || canvas.toDataURL() === empty.toDataURL();
-    }).length""")
-    charts = browser.run("return document.querySelectorAll('.chart canvas').length")
-    check(charts >= 3 and blank == 0, f"{blank} of {charts} charts are blank")
+    """Every axis has at least two labels that do not overlap, within the figure, and every line its points."""
+    charts = browser.run("""return [...document.querySelectorAll('#convergence .chart > svg')].map((root) => {
+        const boxes = (selector) => [...root.querySelectorAll(selector)].map((node) => node.getBoundingClientRect());
+        const outer = root.getBoundingClientRect(), x = boxes('.x-tick'), y = boxes('.y-tick');
+        const overlaps = x.slice(1).filter((box, i) => box.left < x[i].right).length;
+        const outside = boxes('text').filter((box) => box.left < outer.left - 1 || box.right > outer.right + 1 || box.bottom > outer.bottom + 1);
+        return { x: x.length, y: y.length, overlaps, outside: outside.length, lines: root.querySelectorAll('.series path[stroke]').length };
+    })""")
+    check(len(charts) >= 3, f"{len(charts)} charts")
+    for chart in charts:
+        check(chart["x"] >= 2 and chart["y"] >= 2 and chart["lines"] >= 1, f"axes without labels or no lines: {chart}")
+        check(chart["overlaps"] == 0 and chart["outside"] == 0, f"labels overlap or are cut: {chart}")
 
 
 def flips_by_keys(browser):
@@ -355,12 +210,11 @@ def names_every_control(browser):
 
 def survives_missing_data(browser, page):
     """Every field of a cell is optional: the page without it must still draw itself."""
-    text = page.read_text(encoding="utf-8")
-    found = re.search(r'(<script type="application/json" id="data">)(.*?)(</script>)', text, re.DOTALL)
-    names = sorted({name for cell in json.loads(found[2])["summary"]["cells"] for name in cell} - {"cell"})
+    whole = data_of(page)
+    names = sorted({name for cell in whole["summary"]["cells"] for name in cell} - {"cell"})
 
     def without(*removed):
-        data = json.loads(found[2])
+        data = data_of(page)
         for cell in data["summary"]["cells"]:
             for name in removed:
                 cell.pop(name, None)
@@ -372,31 +226,16 @@ def survives_missing_data(browser, page):
     variants["comparisons"]["summary"].update(comparisons=[], verdicts=[], warnings=[])
     variants["cells"] = {"summary": {}, "results": {}, "pictures": {}, "images": [], "shrink": 1}
     variants["pictures"] = {**without(), "pictures": {}}
-    variants["numbers"] = json.loads(re.sub(r"(?<=[:\[,])-?\d+\.\d+(e-?\d+)?", "null", found[2]))
+    variants["numbers"] = json.loads(re.sub(r"(?<=[:\[,])-?\d+\.\d+(e-?\d+)?", "null", json.dumps(whole, separators=(",", ":"))))
     with tempfile.TemporaryDirectory() as folder:
         for name, data in variants.items():
-            path = pathlib.Path(folder) / "report.html"
-            path.write_text(
-                text[: found.start(2)] + json.dumps(data).replace("<", "\\u003c") + text[found.end(2) :],
-                encoding="utf-8",
-            )
-            browser.open(path)
-            complaints = [entry["message"] for entry in browser.log("browser")]
-            check(not complaints, f"without {name} the console says {complaints}")
+            browser.open(with_data(page, data, pathlib.Path(folder) / "report.html"))
+            said = complaints(browser)
+            check(not said, f"without {name} the console says {said}")
             check(
                 browser.run("return document.querySelectorAll('section').length") >= 3,
                 f"without {name} the page is empty",
             )
-
-
-def make_report(folder):
-    """The report of the made-up run of report_test.cpp."""
-    program = pathlib.Path(os.environ.get("ULAM", "build/release/ulam")).parent / "tests" / "test_experiments_report"
-    if not program.exists():
-        sys.exit(f"report_browser_test: no {program}; build the tests, or name a report.html")
-    command = [program, "a report holds its run and asks for nothing"]
-    subprocess.run(command, env={**os.environ, "ULAM_REPORT_DIR": folder}, check=True, stdout=subprocess.DEVNULL)
-    return pathlib.Path(folder) / "report.html"
 
 
 def test_page(page):
@@ -418,36 +257,9 @@ def test_page(page):
         follows_the_colour_scheme,
         names_every_control,
     ]
-    passed = failed = 0
-    browser = Browser()
-    try:
-        browser.open(page)
-        browser.media("light")
-        for test in [*tests, functools.partial(survives_missing_data, page=page)]:
-            try:
-                test(browser)
-                passed += 1
-            except (AssertionError, RuntimeError) as error:
-                failed += 1
-                print(f"FAILED {getattr(test, 'func', test).__name__}: {error}")
-        complaints = [entry["message"] for entry in browser.log("browser")]
-        if complaints:
-            failed += 1
-            print(f"FAILED: while it was used the console said {complaints}")
-    finally:
-        browser.close()
-    print(f"{passed} passed, {failed} failed")
-    return 1 if failed else 0
-
-
-def main():
-    if len(sys.argv) > 2:
-        sys.exit(__doc__)
-    if len(sys.argv) == 2:
-        return test_page(pathlib.Path(sys.argv[1]).resolve())
-    with tempfile.TemporaryDirectory() as folder:
-        return test_page(make_report(folder))
+    return run_tests([*tests, functools.partial(survives_missing_data, page=page)], lambda browser: browser.open(page))
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    with report(sys.argv) as shown:
+        sys.exit(test_page(shown))

@@ -1,0 +1,222 @@
+"""A page in a real browser, by chromium and chromedriver alone, and the report of the made-up run of report_test.cpp."""
+
+import contextlib
+import http.client
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+ELEMENT = "element-6066-11e4-a52e-4f735466cecf"  # the name WebDriver gives to references
+ENTER, TAB, LEFT, UP, RIGHT, DOWN = "\ue007", "\ue004", "\ue012", "\ue013", "\ue014", "\ue015"
+
+
+class Browser:
+    """A WebDriver session (W3C) with chromedriver."""
+
+    def __init__(self):
+        driver = shutil.which("chromedriver")
+        browser = shutil.which("chromium") or shutil.which("google-chrome")
+        if not driver or not browser:
+            sys.exit("tests in a browser need chromium and chromedriver")
+        self.process = subprocess.Popen(
+            [driver, "--port=0"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
+        )
+        for line in self.process.stdout:
+            if found := re.search(r"started successfully on port (\d+)", line):
+                self.port = int(found[1])
+                break
+        options = {
+            "binary": browser,
+            "args": [
+                "--headless=new",
+                "--no-sandbox",
+                "--disable-gpu",
+                "--disable-dev-shm-usage",
+                "--window-size=1280,900",
+            ],
+        }
+        self.session = ""
+        self.session = (
+            "/session/"
+            + self.call(
+                "POST",
+                "/session",
+                {
+                    "capabilities": {
+                        "alwaysMatch": {
+                            "goog:chromeOptions": options,
+                            "goog:loggingPrefs": {"browser": "ALL", "performance": "ALL"},
+                        }
+                    }
+                },
+            )["sessionId"]
+        )
+
+    def call(self, method, path, body=None):
+        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=120)
+        connection.request(method, self.session + path, None if body is None else json.dumps(body))
+        value = json.loads(connection.getresponse().read())["value"]
+        if isinstance(value, dict) and "error" in value:
+            raise RuntimeError(f"{value['error']}: {value['message']}")
+        return value
+
+    def open(self, path):
+        self.call("POST", "/url", {"url": path.as_uri()})
+        self.settle()
+
+    def settle(self):
+        """Waits until two frames are drawn: charts are made in one, observers answer in the next."""
+        self.call(
+            "POST",
+            "/execute/async",
+            {
+                "script": "const done = arguments[0];"
+                "requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(done, 30)))",
+                "args": [],
+            },
+        )
+
+    def run(self, script, *arguments):
+        return self.call("POST", "/execute/sync", {"script": script, "args": list(arguments)})
+
+    def press(self, *keys):
+        actions = [{"type": kind, "value": key} for key in keys for kind in ("keyDown", "keyUp")]
+        self.call("POST", "/actions", {"actions": [{"type": "key", "id": "keyboard", "actions": actions}]})
+        self.settle()
+
+    def focus(self, selector):
+        self.run("document.querySelector(arguments[0]).focus()", selector)
+
+    def click(self, selector):
+        element = self.call("POST", "/element", {"using": "css selector", "value": selector})[ELEMENT]
+        self.call("POST", f"/element/{element}/click", {})
+        self.settle()
+
+    def drag(self, selector, dx, dy, grip=None):
+        """Drags from the middle of an element, or from `grip`, pixels from its upper left corner."""
+        x, y = self.run(
+            """const node = document.querySelector(arguments[0]), grip = arguments[1];
+            node.scrollIntoView({ block: "center", behavior: "instant" });
+            const box = node.getBoundingClientRect();
+            return grip ? [grip[0] - box.width / 2, grip[1] - box.height / 2].map(Math.round) : [0, 0]""",
+            selector,
+            grip,
+        )
+        element = self.call("POST", "/element", {"using": "css selector", "value": selector})
+        self.call(
+            "POST",
+            "/actions",
+            {
+                "actions": [
+                    {
+                        "type": "pointer",
+                        "id": "mouse",
+                        "actions": [
+                            {"type": "pointerMove", "origin": element, "x": x, "y": y},
+                            {"type": "pointerDown", "button": 0},
+                            {"type": "pointerMove", "origin": "pointer", "x": dx, "y": dy},
+                            {"type": "pointerUp", "button": 0},
+                        ],
+                    }
+                ]
+            },
+        )
+        self.settle()
+
+    def media(self, scheme):
+        self.call(
+            "POST",
+            "/goog/cdp/execute",
+            {
+                "cmd": "Emulation.setEmulatedMedia",
+                "params": {"features": [{"name": "prefers-color-scheme", "value": scheme}]},
+            },
+        )
+        self.settle()
+
+    def pixels(self, selector):
+        """The pixels of the first such canvas, as a string to compare."""
+        return self.run("return document.querySelector(arguments[0]).toDataURL()", selector)
+
+    def log(self, kind):
+        return self.call("POST", "/se/log", {"type": kind})
+
+    def close(self):
+        try:
+            self.call("DELETE", "")
+        finally:
+            self.process.terminate()
+            self.process.wait()
+
+
+def check(condition, message):
+    if not condition:
+        raise AssertionError(message)
+
+
+def make_report(folder):
+    """The report of the made-up run of report_test.cpp."""
+    program = pathlib.Path(os.environ.get("ULAM", "build/release/ulam")).parent / "tests" / "test_experiments_report"
+    if not program.exists():
+        sys.exit(f"no {program}; build the tests, or name a report.html")
+    command = [program, "a report holds its run and asks for nothing"]
+    subprocess.run(command, env={**os.environ, "ULAM_REPORT_DIR": folder}, check=True, stdout=subprocess.DEVNULL)
+    return pathlib.Path(folder) / "report.html"
+
+
+DATA = re.compile(r'(<script type="application/json" id="data">)(.*?)(</script>)', re.DOTALL)
+
+
+def data_of(page):
+    return json.loads(DATA.search(page.read_text(encoding="utf-8"))[2])
+
+
+def with_data(page, data, path, elements=""):
+    """The page with other data, and elements of pictures that go with them, as a new file."""
+    text = page.read_text(encoding="utf-8")
+    found = DATA.search(text)
+    safe = json.dumps(data).replace("<", "\\u003c")
+    path.write_text(text[: found.start(2)] + safe + found[3] + elements + text[found.end() :], encoding="utf-8")
+    return path
+
+
+def complaints(browser):
+    return [entry["message"] for entry in browser.log("browser")]
+
+
+def run_tests(tests, open_page):
+    """Runs each test on the page that `open_page` opens first; 0 if all passed, as an exit code."""
+    passed = failed = 0
+    browser = Browser()
+    try:
+        open_page(browser)
+        browser.media("light")
+        for test in tests:
+            try:
+                test(browser)
+                passed += 1
+            except (AssertionError, RuntimeError) as error:
+                failed += 1
+                print(f"FAILED {getattr(test, 'func', test).__name__}: {error}")
+        if said := complaints(browser):
+            failed += 1
+            print(f"FAILED: while it was used the console said {said}")
+    finally:
+        browser.close()
+    print(f"{passed} passed, {failed} failed")
+    return 1 if failed else 0
+
+
+@contextlib.contextmanager
+def report(arguments):
+    """The page a test is given, or else that of the made-up run."""
+    if len(arguments) == 2:
+        yield pathlib.Path(arguments[1]).resolve()
+        return
+    with tempfile.TemporaryDirectory() as folder:
+        yield make_report(folder)
