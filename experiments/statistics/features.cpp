@@ -18,8 +18,14 @@ std::optional<double> neverVisitedP(const MeanEstimate& truth, std::size_t repli
     return std::min(1.0, 2 * std::pow(1 - w, static_cast<double>(replicates)));
 }
 
-/// Where the squared relative spread allows a test: the larger p of Welch's and Johnson's.
-std::optional<double> visitedP(std::span<const double> column, const MeanEstimate& truth) {
+void requireFeatures(std::size_t expected, std::size_t found) {
+    if (expected == found) return;
+    fail(ExitCode::InvalidConfig, "feature occupancy: expected {} features, found {}", expected, found);
+}
+
+}  // namespace
+
+std::optional<double> skewedMeanP(std::span<const double> column, const MeanEstimate& truth) {
     const double n = static_cast<double>(column.size());
     const MeanEstimate found = estimateMean(column);
     const double variance = found.varianceOfMean * n;
@@ -33,13 +39,6 @@ std::optional<double> visitedP(std::span<const double> column, const MeanEstimat
     corrected.mean += third / (6 * variance * n) + third / (3 * variance * variance) * difference * difference;
     return std::max(welch, welchTest(corrected, truth).p);
 }
-
-void requireFeatures(std::size_t expected, std::size_t found) {
-    if (expected == found) return;
-    fail(ExitCode::InvalidConfig, "feature occupancy: expected {} features, found {}", expected, found);
-}
-
-}  // namespace
 
 std::vector<FeatureShare> featureShares(std::span<const std::vector<double>> shares,
                                         std::span<const MeanEstimate> truth) {
@@ -62,7 +61,7 @@ std::vector<FeatureShare> featureShares(std::span<const std::vector<double>> sha
         if (truth.empty()) continue;
         feature.truth = truth[f].mean;
         if (column.size() < 2) continue;
-        const auto tested = feature.share == 0 ? neverVisitedP(truth[f], column.size()) : visitedP(column, truth[f]);
+        const auto tested = feature.share == 0 ? neverVisitedP(truth[f], column.size()) : skewedMeanP(column, truth[f]);
         feature.judged = tested.has_value();
         p[f] = tested.value_or(1);
     }

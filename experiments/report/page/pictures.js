@@ -3,6 +3,9 @@
 const kErrorRange = [0.01, 10]; // of the false colours, relative error
 const kRelativeEpsilon = 0.01; // added to r², as in relMSE
 
+const embeddedBytes = (id) =>
+    Uint8Array.from(atob(document.getElementById(`image-${id}`).textContent), (c) => c.charCodeAt(0));
+
 class Picture {
     constructor(id) {
         Object.assign(this, data.images[id]);
@@ -14,15 +17,15 @@ class Picture {
 
     get rgb() {
         if (this.decoded) return this.decoded;
-        const bytes = atob(document.getElementById(`image-${this.id}`).textContent);
+        const bytes = embeddedBytes(this.id);
         const scale = Array.from({ length: 32 }, (_, e) => 2 ** (e - 24));
         const out = new Float32Array(3 * this.width * this.height);
         for (let i = 0, j = 0; j < out.length; i += 4, j += 3) {
             const word =
-                bytes.charCodeAt(i) |
-                (bytes.charCodeAt(i + 1) << 8) |
-                (bytes.charCodeAt(i + 2) << 16) |
-                (bytes.charCodeAt(i + 3) << 24);
+                bytes[i] |
+                (bytes[i + 1] << 8) |
+                (bytes[i + 2] << 16) |
+                (bytes[i + 3] << 24);
             const unit = scale[word >>> 27];
             out[j] = (word & 511) * unit;
             out[j + 1] = ((word >>> 9) & 511) * unit;
@@ -62,16 +65,58 @@ class Picture {
     }
 
     paintError(out, reference) {
-        const [lo, hi] = kErrorRange.map(Math.log);
         for (let i = 0; i < this.width * this.height; ++i) {
-            const t = clamp((Math.log(this.relativeError(i, reference) + 1e-12) - lo) / (hi - lo), 0, 1);
-            const [r, g, b] = kErrorPalette[Math.round(t * 255)];
+            const [r, g, b] = kErrorPalette[Math.round(255 * errorPlace(this.relativeError(i, reference) + 1e-12))];
             out[4 * i] = r;
             out[4 * i + 1] = g;
             out[4 * i + 2] = b;
             out[4 * i + 3] = 255;
         }
     }
+}
+
+/// A byte for each block of an image: how much its runs scatter, or whether their mean is the reference.
+class BlockMap {
+    constructor(id, colour) {
+        Object.assign(this, data.images[id]);
+        this.bytes = embeddedBytes(id);
+        this.canvas = document.createElement("canvas");
+        this.canvas.width = this.width;
+        this.canvas.height = this.height;
+        this.colour = colour;
+    }
+
+    shown() {
+        if (this.dark === isDark()) return this.canvas;
+        this.dark = isDark();
+        const pixels = new ImageData(this.width, this.height),
+            colours = Array.from({ length: 256 }, (_, byte) => this.colour(byte));
+        this.bytes.forEach((byte, i) => pixels.data.set([...colours[byte], 255], 4 * i));
+        this.canvas.getContext("2d").putImageData(pixels, 0, 0);
+        return this.canvas;
+    }
+
+    /// At a place of the image, both coordinates from 0 to 1.
+    at(u, v) {
+        const [x, y] = [Math.floor((u / this.span[0]) * this.width), Math.floor((v / this.span[1]) * this.height)];
+        return this.bytes[clamp(y, 0, this.height - 1) * this.width + clamp(x, 0, this.width - 1)];
+    }
+}
+
+/// Relative standard deviation over runs, from its byte; on the scale of the errors it explains.
+const deviationOf = (byte) => (byte === 0 ? 0 : 10 ** ((6 * (byte - 1)) / 254 - 3));
+const errorPlace = (error) => clamp(Math.log(error / kErrorRange[0]) / Math.log(kErrorRange[1] / kErrorRange[0]), 0, 1);
+const deviationColour = (byte) => kErrorPalette[Math.round(255 * (byte === 0 ? 0 : errorPlace(deviationOf(byte))))];
+
+/// Adjusted p with the sign of the difference, from its byte; null where a block is not judged.
+const testOf = (byte) => (byte === 0 ? null : { p: 10 ** (-Math.abs(byte - 128) / 20), bright: byte > 128 });
+const kSmallestShownP = 1e-4;
+const kNotJudged = [128, 128, 128];
+function testColour(byte) {
+    const test = testOf(byte);
+    if (!test) return kNotJudged;
+    const size = clamp(Math.log(test.p) / Math.log(kSmallestShownP), 0, 1);
+    return diverging(test.bright ? size : -size);
 }
 
 const kToneCurve = Uint8Array.from({ length: 4096 }, (_, i) => linearToByte(i / 4095));
@@ -81,6 +126,13 @@ function picture(id) {
     if (id === undefined || id === null || !data.images[id]) return null;
     if (!pictureCache.has(id)) pictureCache.set(id, new Picture(id));
     return pictureCache.get(id);
+}
+
+const blockMapCache = new Map();
+function blockMap(id, colour) {
+    if (id === undefined || !data.images[id]) return null;
+    if (!blockMapCache.has(id)) blockMapCache.set(id, new BlockMap(id, colour));
+    return blockMapCache.get(id);
 }
 
 /// The exposure, in half stops, that puts the 99th percentile of the picture just below white.

@@ -1,15 +1,27 @@
-// The linked viewer: a stage that flips in place, tiles side by side, two movable crops under each; one view for all.
+// The linked viewer: a stage that flips in place or is split between two pictures, tiles side by side, two movable crops
+// under each; one view for all.
+
+/// What can be shown of a picture: key, name, and of entries of cells the map that stands for it.
+const kShows = [
+    { id: "tones", name: "picture" },
+    { id: "error", key: "e", name: "relative error" },
+    { id: "deviation", key: "d", name: "spread over runs", map: (ids) => blockMap(ids.deviation, deviationColour) },
+    { id: "tests", key: "p", name: "p-values", map: (ids) => blockMap(ids.tests, testColour) },
+];
 
 class Viewer {
     constructor(group) {
         this.group = group;
-        this.state = { zoom: 1, u: 0.5, v: 0.5, exposure: 0, error: false, worst: false, shown: 0 };
+        this.state = { zoom: 1, u: 0.5, v: 0.5, exposure: 0, show: "tones", worst: false, shown: 0, split: null, left: 0 };
         this.reference = this.comparableReference();
         this.entries = this.makeEntries();
         const first = this.entries[0].picture;
         this.state.exposure = fittingExposure(this.reference ?? first);
         this.aspect = first.width / first.height;
         this.insets = this.defaultInsets(first);
+        this.shows = kShows.filter(({ id, map }) =>
+            map ? group.cells.some((cell) => map(pictureIds(cell))) : id !== "error" || this.reference,
+        );
         this.element = this.build();
         this.resize = new ResizeObserver(() => this.draw());
         this.resize.observe(this.element);
@@ -76,11 +88,12 @@ class Viewer {
         this.stageTitle = el("p", { class: "stage-title", "aria-live": "polite" });
         this.readout = el("p", { class: "readout" }, "\u00a0");
         this.handles = this.insets.map((inset, i) => this.insetHandle(inset, i));
+        this.divider = this.splitDivider();
         this.tiles = this.entries.map((entry, i) => this.tile(entry, i));
         const columns = this.entries.filter((entry) => entry.kind !== "mean").length;
-        const legend = this.errorLegend();
+        this.legend = el("div", { class: "tile error-legend" });
         const first = this.entries.findIndex((entry) => entry.kind === "mean");
-        const tiles = [...this.tiles.slice(0, first), this.reference ? legend : null, ...this.tiles.slice(first)];
+        const tiles = [...this.tiles.slice(0, first), this.legend, ...this.tiles.slice(first)];
         return el(
             "div",
             { class: "viewer", id: `viewer-${this.group.id}` },
@@ -88,7 +101,7 @@ class Viewer {
                 "div",
                 { class: "stage-side" },
                 this.stageTitle,
-                el("div", { class: "stage-box", style: `aspect-ratio: ${this.aspect}` }, this.stage, this.handles),
+                el("div", { class: "stage-box", style: `aspect-ratio: ${this.aspect}` }, this.stage, this.handles, this.divider),
                 this.readout,
                 this.controls(),
             ),
@@ -112,12 +125,29 @@ class Viewer {
             "aria-label": "exposure in stops",
             oninput: () => this.set({ exposure: Number(this.exposure.value) }),
         });
-        this.errorBox = el("input", {
-            type: "checkbox",
-            class: "error-toggle",
-            disabled: !this.reference,
-            onchange: () => this.set({ error: this.errorBox.checked }),
+        this.showButtons = this.shows.map(({ id, key, name }) => {
+            const input = el("input", {
+                type: "radio",
+                class: `${id}-toggle`,
+                name: `show-${this.group.id}`,
+                onchange: () => this.set({ show: id }),
+            });
+            return { id, input, label: el("label", {}, input, ` ${name} `, key && el("kbd", {}, key)) };
         });
+        this.splitBox = el("input", {
+            type: "checkbox",
+            class: "split-toggle",
+            onchange: () => this.set({ split: this.splitBox.checked ? 0.5 : null }),
+        });
+        this.leftChoice = el(
+            "select",
+            {
+                class: "split-left",
+                "aria-label": "picture left of the divider",
+                onchange: () => this.set({ left: this.leftChoice.selectedIndex }),
+            },
+            this.entries.map((entry) => el("option", {}, entry.kind === "mean" ? `${entry.title}, mean` : entry.title)),
+        );
         this.worstBox = el("input", {
             type: "checkbox",
             class: "worst-toggle",
@@ -128,7 +158,12 @@ class Viewer {
             "div",
             { class: "controls" },
             el("label", {}, "exposure ", this.exposure, this.exposureValue),
-            el("label", {}, this.errorBox, " relative error ", el("kbd", {}, "e")),
+            el(
+                "div",
+                { class: "shows", role: "radiogroup", "aria-label": "what is shown" },
+                this.showButtons.map(({ label }) => label),
+            ),
+            el("label", {}, this.splitBox, " split ", el("kbd", {}, "s"), " left: ", this.leftChoice),
             el("label", {}, this.worstBox, " worst run ", el("kbd", {}, "w")),
             el("button", { type: "button", onclick: () => this.reset() }, "reset view ", el("kbd", {}, "0")),
             el(
@@ -145,26 +180,40 @@ class Viewer {
                 el("kbd", {}, "["),
                 " ",
                 el("kbd", {}, "]"),
-                " exposure · drag the two frames by their corners, or focus them and use the arrows",
+                " exposure · drag the two frames by their corners, or focus them and use the arrows; so is the divider",
             ),
         );
     }
 
-    errorLegend() {
-        return el(
-            "div",
-            { class: "tile error-legend" },
-            colourBar(
-                magma,
-                [0.01, 0.1, 1, 10].map(percent).map((text) => text.replace(".0", "")),
-                "relative error of a pixel",
-            ),
-            el(
-                "p",
-                {},
+    /// What the colours mean.
+    drawLegend() {
+        const errors = [0.01, 0.1, 1, 10].map(percent).map((text) => text.replace(".0", ""));
+        const legends = {
+            error: [
+                colourBar(magma, errors, "relative error of a pixel"),
                 "√ of the mean over channels of (x − r)² ∕ (r² + 0.01): what relMSE averages, before the square.",
-            ),
-        );
+            ],
+            deviation: [
+                colourBar(magma, errors, "relative standard deviation"),
+                "Of luminance over runs, relative to √(mean² + 0.01): the error of one run that is noise. What is brighter in the map of errors is bias, or luck.",
+            ],
+            tests: [
+                colourBar((t) => diverging(2 * t - 1), ["p ≤ 10⁻⁴", "1", "p ≤ 10⁻⁴"], "too dark · too bright"),
+                "Is the mean over runs the reference? Welch’s test corrected for skewness, at a false discovery rate of 5 %. Grey: not judged, the runs scatter too much or not at all.",
+            ],
+        };
+        const [bar, text] = legends[this.state.show] ?? (this.reference ? legends.error : []);
+        this.legend.replaceChildren(...[bar, text && el("p", {}, text)].filter(Boolean));
+    }
+
+    /// What the tests over a cell's map found, in words.
+    testsNote(cell) {
+        const map = kShows.find(({ id }) => id === "tests").map(pictureIds(cell));
+        if (!map) return "";
+        const tests = [...map.bytes].map(testOf).filter(Boolean),
+            wrong = tests.filter(({ p }) => p <= 0.05).length;
+        const size = map.block > 1 ? `blocks of ${map.block} × ${map.block}` : "pixels";
+        return tests.length ? `${wrong} of ${tests.length} ${size} differ` : "nothing can be judged";
     }
 
     tile(entry, index) {
@@ -228,6 +277,27 @@ class Viewer {
         return handle;
     }
 
+    /// Between the picture on the left and the one shown.
+    splitDivider() {
+        const move = (by) => this.set({ split: this.state.split + by });
+        const divider = el("div", { class: "split-divider", role: "slider", tabindex: 0, "aria-label": "divider between two pictures", "aria-valuemin": 0, "aria-valuemax": 100 });
+        divider.addEventListener("keydown", (e) => {
+            const step = { ArrowLeft: -1, ArrowRight: 1 }[e.key];
+            if (!step) return;
+            e.preventDefault();
+            e.stopPropagation();
+            move(step / 50);
+        });
+        divider.addEventListener("pointerdown", (e) => {
+            e.stopPropagation();
+            divider.setPointerCapture(e.pointerId);
+            const dragging = (m) => move(m.movementX / this.stage.clientWidth);
+            divider.addEventListener("pointermove", dragging);
+            divider.addEventListener("pointerup", () => divider.removeEventListener("pointermove", dragging), { once: true });
+        });
+        return divider;
+    }
+
     /// A canvas whose drags and wheel move the common view.
     linkedCanvas(name, entry) {
         const canvas = el("canvas", { class: name });
@@ -277,7 +347,7 @@ class Viewer {
     }
 
     reset() {
-        this.set({ zoom: 1, u: 0.5, v: 0.5, exposure: this.fitted, error: false });
+        this.set({ zoom: 1, u: 0.5, v: 0.5, exposure: this.fitted, show: "tones", split: null });
     }
 
     set(change) {
@@ -286,6 +356,7 @@ class Viewer {
         this.state.u = clamp(this.state.u, half, 1 - half);
         this.state.v = clamp(this.state.v, half, 1 - half);
         this.state.exposure = clamp(this.state.exposure, -12, 12);
+        if (this.state.split !== null) this.state.split = clamp(this.state.split, 0, 1);
         if ("worst" in change)
             this.entries.filter((entry) => entry.kind === "replicate").forEach((entry) => this.chooseReplicate(entry));
         this.draw();
@@ -298,7 +369,8 @@ class Viewer {
         if (pan && document.activeElement === this.stage)
             this.set({ u: state.u + (pan[0] * 0.1) / state.zoom, v: state.v + (pan[1] * 0.1) / state.zoom });
         else if (/^[1-9]$/.test(e.key) && Number(e.key) <= this.entries.length) this.set({ shown: Number(e.key) - 1 });
-        else if (e.key === "e" && this.reference) this.set({ error: !state.error });
+        else if (this.shows.some(({ key }) => key === e.key)) this.toggleShow(this.shows.find(({ key }) => key === e.key).id);
+        else if (e.key === "s") this.set({ split: state.split === null ? 0.5 : null });
         else if (e.key === "w") this.set({ worst: !state.worst });
         else if (e.key === "0") this.reset();
         else if (e.key === "+" || e.key === "=") this.zoomBy(1.5);
@@ -306,6 +378,10 @@ class Viewer {
         else if (e.key === "[" || e.key === "]") this.set({ exposure: state.exposure + (e.key === "]" ? 0.5 : -0.5) });
         else return false;
         return true;
+    }
+
+    toggleShow(id) {
+        this.set({ show: this.state.show === id ? "tones" : id });
     }
 
     describePixel(entry, [u, v]) {
@@ -319,47 +395,90 @@ class Viewer {
             this.reference && entry.kind !== "reference"
                 ? ` · reference ${rgb(this.reference)} · relative error ${percent(image.relativeError(i, this.reference))}`
                 : "";
-        this.readout.textContent = `pixel ${x}, ${y}: ${rgb(image)}${against}`;
+        const ids = entry.cell ? pictureIds(entry.cell) : {};
+        const deviation = blockMap(ids.deviation, deviationColour)?.at(u, v),
+            test = testOf(blockMap(ids.tests, testColour)?.at(u, v) ?? 0);
+        const overRuns = [
+            isNumber(deviation) && ` · spread over runs ${percent(deviationOf(deviation))}`,
+            test && ` · p = ${pValue(test.p)}${test.p <= 0.05 ? `, too ${test.bright ? "bright" : "dark"}` : ""}`,
+        ];
+        this.readout.textContent = [`pixel ${x}, ${y}: ${rgb(image)}${against}`, ...overRuns].filter(Boolean).join("");
     }
 
-    paint(canvas, image, view, entry) {
+    /// What stands for an entry now, and how much wider and higher it is than the picture.
+    source(entry) {
+        const image = entry.picture,
+            { show, exposure } = this.state;
+        if (entry.kind === "reference") return { canvas: image.shown(exposure) };
+        if (show === "error") return { canvas: image.shown(exposure, this.reference) };
+        const map = kShows.find(({ id }) => id === show).map?.(pictureIds(entry.cell));
+        return map ? { canvas: map.shown(), span: map.span, isMap: true } : { canvas: image.shown(exposure) };
+    }
+
+    paint(canvas, view, entry) {
         const context = fitCanvas(canvas);
-        const error = this.state.error && entry.kind !== "reference" ? this.reference : null;
-        const source = image.shown(this.state.exposure, error);
-        const scale = view.zoom * Math.min(canvas.width, canvas.height * this.aspect);
-        const width = scale,
-            height = scale / this.aspect;
         context.fillStyle = "#000";
         context.fillRect(0, 0, canvas.width, canvas.height);
-        context.imageSmoothingEnabled = width < image.width;
+        this.paintEntry(context, view, entry);
+        return context;
+    }
+
+    paintEntry(context, view, entry) {
+        const { canvas } = context,
+            { canvas: image, span = [1, 1], isMap } = this.source(entry);
+        const width = view.zoom * Math.min(canvas.width, canvas.height * this.aspect),
+            height = width / this.aspect;
+        context.imageSmoothingEnabled = !isMap && width < image.width;
         context.imageSmoothingQuality = "high";
-        context.drawImage(
-            source,
-            canvas.width / 2 - view.u * width,
-            canvas.height / 2 - view.v * height,
-            width,
-            height,
-        );
+        const [x, y] = [canvas.width / 2 - view.u * width, canvas.height / 2 - view.v * height];
+        context.save();
+        context.beginPath();
+        context.rect(x, y, width, height);
+        context.clip();
+        context.drawImage(image, x, y, width * span[0], height * span[1]);
+        context.restore();
+    }
+
+    paintStage() {
+        const { state, stage } = this;
+        const context = this.paint(stage, state, this.entries[state.shown]);
+        this.divider.hidden = state.split === null;
+        if (state.split === null) return;
+        context.save();
+        context.beginPath();
+        context.rect(0, 0, state.split * stage.width, stage.height);
+        context.clip();
+        context.fillRect(0, 0, stage.width, stage.height);
+        this.paintEntry(context, state, this.entries[state.left]);
+        context.restore();
+        this.divider.style.left = `${100 * state.split}%`;
+        setAttributes(this.divider, { "aria-valuenow": Math.round(100 * state.split) });
     }
 
     draw() {
         const { state } = this;
         this.exposure.value = state.exposure;
         this.exposureValue.textContent = `${state.exposure > 0 ? "+" : ""}${plain(state.exposure)} EV`;
-        this.errorBox.checked = state.error;
+        for (const { id, input } of this.showButtons) input.checked = id === state.show;
+        this.splitBox.checked = state.split !== null;
+        this.leftChoice.selectedIndex = state.left;
+        this.leftChoice.disabled = state.split === null;
+        this.drawLegend();
         this.worstBox.checked = state.worst;
         if (!this.stage.clientWidth) return;
         const shown = this.entries[state.shown];
-        this.paint(this.stage, shown.picture, state, shown);
-        const caption = `${shown.title}${shown.note ? `, ${shown.note}` : ""}`;
+        this.paintStage();
+        const nameOf = (entry) => `${entry.title}${entry.note ? `, ${entry.note}` : ""}`;
+        const caption = `${nameOf(shown)}${state.split === null ? "" : `; left: ${nameOf(this.entries[state.left])}`}`;
         this.stageTitle.replaceChildren(el("kbd", {}, state.shown + 1), ` ${caption}`);
         this.stage.setAttribute("aria-label", caption);
         this.tiles.forEach((tile, i) => {
-            this.paint(tile.canvas, tile.entry.picture, state, tile.entry);
+            this.paint(tile.canvas, state, tile.entry);
             tile.crops.forEach((crop, k) =>
-                this.paint(crop, tile.entry.picture, { zoom: 1 / this.insets[k].size, ...this.insets[k] }, tile.entry),
+                this.paint(crop, { zoom: 1 / this.insets[k].size, ...this.insets[k] }, tile.entry),
             );
-            tile.label.querySelector(".tile-note").textContent = tile.entry.note ?? "";
+            const tested = state.show === "tests" && tile.entry.kind === "mean" && this.testsNote(tile.entry.cell);
+            tile.label.querySelector(".tile-note").textContent = tested || (tile.entry.note ?? "");
             tile.label.setAttribute("aria-pressed", i === state.shown);
         });
         const size = this.imageSize(this.stage.clientWidth, this.stage.clientHeight);

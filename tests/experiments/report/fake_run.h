@@ -36,6 +36,7 @@ public:
             const Image reference = picture(spot, std::vector<double>(std::size_t(holes_ * holes_), 1.0), 0);
             const std::string path = fmt::format("references/{}/image.exr", scene);
             writeImage(path, reference);
+            writeImage(fmt::format("references/{}/variance.exr", scene), Image(size_, size_));
             const bool easy = std::string(scene) == "emitter";
             std::vector<double> errors;
             for (FakeSampler sampler : kSamplers) {

@@ -83,6 +83,61 @@ def toggles_false_colour(browser):
     browser.press("e")
 
 
+def shows_maps_over_runs(browser):
+    """Spread over runs and p-values: maps instead of the pictures, of cells only, and said in words for a pixel."""
+    reference = f"{VIEWER} .tile-image"
+    browser.press("2")
+    before, plain = browser.pixels(reference), browser.pixels(STAGE)
+    seen = {plain}
+    for key, words in (("d", "relative standard deviation"), ("p", "too dark · too bright")):
+        browser.press(key)
+        seen.add(browser.pixels(STAGE))
+        legend = browser.run("return document.querySelector(`${arguments[0]} .error-legend`).textContent", VIEWER)
+        check(words in legend, f"after key {key} the legend says '{legend}'")
+    check(len(seen) == 3, "keys d and p show the same")
+    check(browser.pixels(reference) == before, "the reference has a map of its own")
+    notes = browser.run(
+        "return [...document.querySelectorAll(`${arguments[0]} .tile-note`)].map((n) => n.textContent)", VIEWER
+    )
+    check(any(re.match(r"\d+ of \d+ (pixels|blocks of \d+ × \d+) differ", note) for note in notes), f"notes: {notes}")
+    browser.drag(STAGE, 5, 5, grip=(30, 300))
+    readout = browser.run("return document.querySelector(`${arguments[0]} .readout`).textContent", VIEWER)
+    check("spread over runs" in readout, f"the readout says '{readout}'")
+    browser.press("p")
+    check(browser.pixels(STAGE) == plain, "key p does not toggle back")
+
+
+def splits_the_stage(browser):
+    """Left of the divider the chosen picture, right of it the shown one; moved by arrow keys and by dragging."""
+    halves = """const canvas = document.querySelector(arguments[0]), width = Math.floor(0.4 * canvas.width);
+        return [0, canvas.width - width].map((x) => {
+            const part = Object.assign(document.createElement('canvas'), { width, height: canvas.height });
+            part.getContext('2d').drawImage(canvas, -x, 0);
+            return part.toDataURL();
+        })"""
+    browser.press("1")
+    reference = browser.run(halves, STAGE)
+    browser.press("2")
+    shown = browser.run(halves, STAGE)
+    browser.press("s")
+    check(browser.run(halves, STAGE) == [reference[0], shown[1]], "the halves are not those of the two pictures")
+    divider = f"{VIEWER} .split-divider"
+    browser.focus(divider)
+    browser.press(*[RIGHT] * 15)
+    check(browser.run("return document.querySelector(arguments[0]).ariaValueNow", divider) == "80", "the arrow keys do not move it")
+    check(browser.run(halves, STAGE)[1] != shown[1], "the picture does not follow the divider")
+    browser.drag(divider, -200, 0)
+    now = float(browser.run("return document.querySelector(arguments[0]).ariaValueNow", divider))
+    check(now < 60, f"after dragging it stands at {now} %")
+    browser.focus(f"{VIEWER} .split-left")
+    browser.press(DOWN, DOWN)
+    check(browser.run(halves, STAGE)[0] != reference[0], "choosing the left picture changes nothing")
+    browser.press(UP, UP)
+    browser.run("document.activeElement.blur()")
+    browser.press("s")
+    check(browser.run(halves, STAGE) == shown, "key s does not toggle back")
+
+
 def shows_the_worst_run(browser):
     tiles = f"{VIEWER} .tile:nth-child(2) .tile-note"
     browser.press("w")
@@ -246,6 +301,8 @@ def test_page(page):
         flips_by_keys,
         exposure_changes_all,
         toggles_false_colour,
+        shows_maps_over_runs,
+        splits_the_stage,
         shows_the_worst_run,
         zooms_and_pans_together,
         moves_crops,

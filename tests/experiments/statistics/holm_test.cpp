@@ -44,3 +44,35 @@ TEST_CASE("both corrections keep the family-wise level of 20 independent tests")
     CHECK(anyBelow(holmAdjusted) == Approx(0.0488).margin(0.005));
     CHECK(anyBelow(sidakAdjusted) == Approx(0.05).margin(0.005));
 }
+
+TEST_CASE("Benjamini and Hochberg's adjustment matches a hand example") {
+    // Sorted: 0.005 * 4/1, 0.01 * 4/2, 0.03 * 4/3, 0.04 * 4/4, each lowered to its successor.
+    const std::vector<double> adjusted = benjaminiHochbergAdjusted(std::vector<double>{0.01, 0.04, 0.03, 0.005});
+    REQUIRE(adjusted.size() == 4);
+    CHECK(adjusted[0] == Approx(0.02));
+    CHECK(adjusted[1] == Approx(0.04));
+    CHECK(adjusted[2] == Approx(0.04));
+    CHECK(adjusted[3] == Approx(0.02));
+    CHECK(benjaminiHochbergAdjusted({}).empty());
+    CHECK(benjaminiHochbergAdjusted(std::vector<double>{0.6, 0.9}) == std::vector<double>{0.9, 0.9});
+}
+
+TEST_CASE("of the discoveries at a false discovery rate of 5 % a share of 5 % times that of true hypotheses is false") {
+    std::uniform_real_distribution<double> uniform;
+    PhiloxStream random(32);
+    double share = 0;
+    constexpr int kTrials = 2000, kTests = 200, kTrue = 150;
+    for (int trial = 0; trial < kTrials; ++trial) {
+        std::vector<double> p(kTests);
+        for (int i = 0; i < kTests; ++i) p[std::size_t(i)] = uniform(random) * (i < kTrue ? 1 : 1e-3);
+        int found = 0, wrong = 0;
+        const std::vector<double> adjusted = benjaminiHochbergAdjusted(p);
+        for (int i = 0; i < kTests; ++i) {
+            if (adjusted[std::size_t(i)] > 0.05) continue;
+            ++found;
+            wrong += i < kTrue;
+        }
+        if (found > 0) share += double(wrong) / found / kTrials;
+    }
+    CHECK(share == Approx(0.05 * kTrue / kTests).margin(0.003));  // standard error 0.06 %
+}

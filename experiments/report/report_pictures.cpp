@@ -1,0 +1,272 @@
+#include "experiments/report/report_pictures.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "core/image/image_io.h"
+#include "experiments/report/chain_data.h"
+#include "experiments/report/picture_code.h"
+#include "experiments/report/replicate_maps.h"
+#include "experiments/report/report.h"
+
+namespace ulam {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Shares of kReportImageBytes for what is the same size whatever the film is.
+constexpr double kTechniqueBytes = 4e6;
+constexpr double kChainBytes = 4e6;
+constexpr int kTechniqueEdge = 128;  ///< pixels, of the images of techniques
+
+constexpr double base64Size(double bytes) {
+    return bytes * 4 / 3;
+}
+
+Json readJsonIfThere(const fs::path& path) {
+    return fs::exists(path) ? JsonDocument::fromFile(path).json() : Json();
+}
+
+/// The folders of a cell's replicates that left an image, by number.
+std::map<std::size_t, fs::path> replicateFolders(const fs::path& cellFolder) {
+    std::map<std::size_t, fs::path> folders;
+    if (!fs::exists(cellFolder)) return folders;
+    for (const fs::directory_entry& entry : fs::directory_iterator(cellFolder)) {
+        const std::string name = entry.path().filename().string();
+        std::size_t replicate = 0;
+        const char* const end = name.data() + name.size();
+        const bool numbered = name.starts_with('r') && std::from_chars(name.data() + 1, end, replicate).ptr == end;
+        if (numbered && fs::exists(entry.path() / "image.exr")) folders.emplace(replicate, entry.path());
+    }
+    return folders;
+}
+
+/// The replicate the summary names, or else the one of this rank (0 … 1) in the primary metric, or else the first.
+std::size_t chooseReplicate(const Json& cell, const char* name, double rank, const std::string& metric) {
+    if (const auto named = cell.find(name); named != cell.end() && named->is_number_unsigned())
+        return named->get<std::size_t>();
+    const Json values = cell.value(Json::json_pointer("/metrics/" + metric + "/values"), Json::array());
+    std::vector<std::pair<double, std::size_t>> sorted;
+    for (std::size_t r = 0; r < values.size(); ++r)
+        if (values[r].is_number()) sorted.emplace_back(values[r].get<double>(), r);
+    if (sorted.empty()) return 0;
+    std::sort(sorted.begin(), sorted.end());
+    return sorted[static_cast<std::size_t>(rank * double(sorted.size() - 1))].second;
+}
+
+/// Elements of the page, numbered: texts of their own, so that the browser parses only what it shows.
+class Elements {
+public:
+    std::size_t add(const Json& size, std::string_view bytes) {
+        const std::size_t id = sizes.size();
+        sizes.push_back(size);
+        text += fmt::format("<script type=\"text/plain\" id=\"image-{}\">{}</script>\n", id, encodeBase64(bytes));
+        return id;
+    }
+    std::size_t add(const Image& image) {
+        return add({{"width", image.width}, {"height", image.height}}, encodeRgb9e5(image));
+    }
+    /// With how much wider and higher its blocks are than the image together.
+    std::size_t add(const ByteMap& map, const Image& image) {
+        const std::string_view bytes(reinterpret_cast<const char*>(map.bytes.data()), map.bytes.size());
+        return add(
+            {{"width", map.width},
+             {"height", map.height},
+             {"block", map.block},
+             {"span", {double(map.width) * map.block / image.width, double(map.height) * map.block / image.height}}},
+            bytes);
+    }
+
+    Json sizes = Json::array();
+    std::string text;
+};
+
+/// What a cell shows, before its images are read.
+struct CellPlan {
+    std::string cell;
+    std::map<std::size_t, fs::path> replicates;  ///< folders
+    std::size_t median = 0, worst = 0;
+    std::optional<fs::path> reference;
+    std::vector<std::pair<int, int>> techniques;  ///< (s, t) with images in the median replicate's extra/
+    Json result;                                  ///< the median replicate's result.json
+
+    fs::path folder() const { return replicates.at(median); }
+};
+
+fs::path techniqueFile(const fs::path& replicate, std::pair<int, int> technique, std::string_view kind) {
+    return replicate / "extra" / fmt::format("s{:02}_t{:02}_{}.exr", technique.first, technique.second, kind);
+}
+
+std::vector<std::pair<int, int>> techniquesIn(const fs::path& replicate) {
+    std::vector<std::pair<int, int>> found;
+    if (!fs::exists(replicate / "extra")) return found;
+    for (const fs::directory_entry& entry : fs::directory_iterator(replicate / "extra")) {
+        const std::string name = entry.path().filename().string();
+        if (name.size() < 7 || name[0] != 's' || !name.ends_with("_weighted.exr")) continue;
+        int s = 0, t = 0;
+        const char* const end = name.data() + name.size();
+        const auto read = std::from_chars(name.data() + 1, end, s);
+        if (read.ec != std::errc() || end - read.ptr < 3 || std::from_chars(read.ptr + 2, end, t).ec != std::errc())
+            continue;
+        if (fs::exists(techniqueFile(replicate, {s, t}, "unweighted"))) found.emplace_back(s, t);
+    }
+    std::ranges::sort(found);
+    return found;
+}
+
+CellPlan planCell(const fs::path& runDir, const Json& cell, const std::string& metric) {
+    CellPlan plan;
+    plan.cell = cell.at("cell").get<std::string>();
+    plan.replicates = replicateFolders(runDir / "cells" / plan.cell);
+    const auto there = [&](std::size_t replicate) {
+        return plan.replicates.empty() || plan.replicates.contains(replicate) ? replicate
+                                                                              : plan.replicates.begin()->first;
+    };
+    plan.median = there(chooseReplicate(cell, "median_replicate", 0.5, metric));
+    plan.worst = there(chooseReplicate(cell, "worst_replicate", 1, metric));
+    const std::string reference = cell.value("reference_image", std::string());
+    if (!reference.empty() && fs::exists(runDir / reference)) plan.reference = runDir / reference;
+    if (plan.replicates.empty()) return plan;
+    plan.techniques = techniquesIn(plan.folder());
+    plan.result = readJsonIfThere(plan.folder() / "result.json");
+    return plan;
+}
+
+/// The film is the experiment's, so one image tells the size of all.
+double pixelsOf(const std::vector<CellPlan>& plans) {
+    for (const CellPlan& plan : plans)
+        if (!plan.replicates.empty()) return double(readImage((plan.folder() / "image.exr").string()).pixels.size());
+    return 0;
+}
+
+/// The smallest edge of blocks with which all pictures fit into `most` bytes.
+int shrinkFactor(const std::vector<CellPlan>& plans, double pixels, double most) {
+    double bytes = 0;
+    for (const CellPlan& plan : plans) {
+        if (plan.replicates.empty()) continue;
+        // Four bytes a pixel for the mean, the median and the worst replicate and the reference, one for each map.
+        bytes += base64Size((plan.reference ? 4 * 4 + 2 : 3 * 4 + 1) * pixels);
+    }
+    int factor = 1;
+    while (bytes / (double(factor) * factor) > most) ++factor;
+    return factor;
+}
+
+class Gatherer {
+public:
+    Gatherer(std::vector<CellPlan> plans) : plans_(std::move(plans)) {}
+
+    PagePictures gather() {
+        const double pixels = pixelsOf(plans_);
+        double techniques = 0, chains = 0;
+        for (const CellPlan& plan : plans_) {
+            techniques += 2 * double(plan.techniques.size());
+            chains += hasChains(plan) ? 1 : 0;
+        }
+        techniqueFactor_ = 1;
+        const auto techniquePixels = [&] { return pixels / (double(techniqueFactor_) * techniqueFactor_); };
+        while (techniques > 0 && (base64Size(4 * techniques * techniquePixels()) > kTechniqueBytes ||
+                                  techniquePixels() > double(kTechniqueEdge) * kTechniqueEdge))
+            ++techniqueFactor_;
+        chainBytes_ = chains > 0 ? kChainBytes / chains : 0;
+        const double others = (techniques > 0 ? kTechniqueBytes : 0) + (chains > 0 ? kChainBytes : 0);
+        factor_ = shrinkFactor(plans_, pixels, kReportImageBytes - others);
+
+        PagePictures page;
+        page.cells = Json::object();
+        for (const CellPlan& plan : plans_) page.cells[plan.cell] = embed(plan);
+        page.sizes = std::move(elements_.sizes);
+        page.elements = std::move(elements_.text);
+        page.shrink = factor_;
+        return page;
+    }
+
+private:
+    static bool hasChains(const CellPlan& plan) {
+        return plan.result.is_object() && plan.result.value("traces", Json()).is_object();
+    }
+
+    std::size_t addFile(const fs::path& file) {
+        const auto known = files_.find(file);
+        if (known != files_.end()) return known->second;
+        return files_[file] = elements_.add(shrink(readImage(file.string()), factor_));
+    }
+
+    Json embed(const CellPlan& plan) {
+        Json ids = Json::object();
+        if (plan.reference) ids["reference"] = addFile(*plan.reference);
+        if (plan.replicates.empty()) return ids;
+        embedMaps(plan, ids);
+        for (const auto& [name, replicate] : {std::pair{"median", plan.median}, std::pair{"worst", plan.worst}}) {
+            ids[name] = addFile(plan.replicates.at(replicate) / "image.exr");
+            ids[fmt::format("{}_replicate", name)] = replicate;
+        }
+        embedTechniques(plan, ids);
+        embedChains(plan, ids);
+        return ids;
+    }
+
+    void embedMaps(const CellPlan& plan, Json& ids) {
+        std::vector<fs::path> files;
+        for (const auto& [replicate, folder] : plan.replicates) files.push_back(folder / "image.exr");
+        const std::optional<MapReference> reference = readReference(plan);
+        const ReplicateMaps maps = mapReplicates(files, reference ? &*reference : nullptr, factor_);
+        ids["mean"] = elements_.add(shrink(maps.mean, factor_));
+        if (files.size() > 1) ids["deviation"] = elements_.add(maps.deviation, maps.mean);
+        if (maps.tests) ids["tests"] = elements_.add(*maps.tests, maps.mean);
+    }
+
+    /// Null where the variance of its pixels is not known.
+    static std::optional<MapReference> readReference(const CellPlan& plan) {
+        if (!plan.reference) return std::nullopt;
+        const fs::path variance = plan.reference->parent_path() / "variance.exr";
+        if (!fs::exists(variance)) return std::nullopt;
+        const Json result = readJsonIfThere(plan.reference->parent_path() / "result.json");
+        const double parts = result.is_object() ? result.value("replicates", 0.0) : 0;
+        return MapReference{readImage(plan.reference->string()), readImage(variance.string()),
+                            parts > 1 ? parts - 1 : std::numeric_limits<double>::infinity()};
+    }
+
+    void embedTechniques(const CellPlan& plan, Json& ids) {
+        for (const auto& technique : plan.techniques) {
+            Json entry = {{"s", technique.first}, {"t", technique.second}};
+            for (const char* kind : {"weighted", "unweighted"})
+                entry[kind] = elements_.add(
+                    shrink(readImage(techniqueFile(plan.folder(), technique, kind).string()), techniqueFactor_));
+            ids["techniques"].push_back(entry);
+        }
+    }
+
+    void embedChains(const CellPlan& plan, Json& ids) {
+        if (!hasChains(plan)) return;
+        const double draws = plan.result["traces"].at("draws").get<double>();
+        const int most = int(chainBytes_ / base64Size(kDrawBytes * std::max(1.0, draws)));
+        auto chains = readChainData(plan.folder(), plan.result, most);
+        if (!chains) return;
+        ids["chains"] = std::move(chains->fields);
+        ids["chains"]["data"] = elements_.add(Json::object(), chains->bytes);
+    }
+
+    std::vector<CellPlan> plans_;
+    int factor_ = 1, techniqueFactor_ = 1;
+    double chainBytes_ = 0;
+    Elements elements_;
+    std::map<fs::path, std::size_t> files_;
+};
+
+}  // namespace
+
+PagePictures gatherPictures(const fs::path& runDir, const Json& cells, const std::string& metric) {
+    std::vector<CellPlan> plans;
+    for (const Json& cell : cells) plans.push_back(planCell(runDir, cell, metric));
+    return Gatherer(std::move(plans)).gather();
+}
+
+}  // namespace ulam
