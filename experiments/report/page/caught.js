@@ -57,6 +57,20 @@ function caughtPanel(cell) {
     ];
     const reference = picture(ids.reference),
         exposure = reference ? fittingExposure(reference) : 0;
+    const name = `run ${worst} of ${cell.label}, ${cell.group.title}`;
+    const holes = () =>
+        holeMap(grid, { name: `run ${worst} of ${cell.label}`, colour: (hole) => colour(hole.ratios[worst]), describe });
+    const strip = () => {
+        const pictures = [
+            ["reference", picture(ids.reference)],
+            [`${cell.label}, run ${worst}`, picture(ids.worst)],
+        ].filter(([, image]) => image);
+        const parts = pictures.map(([label, image]) => ({ label, canvas: image.shown(exposure), aspect: image.width / image.height }));
+        parts.push({ label: "its holes: share over true share", svg: holes(), aspect: grid.columns / grid.rows });
+        return pictureStrip(name, parts, {
+            scale: { map: (t) => diverging(2 * t - 1), labels: ratioLabels(limit), title: "share over true share" },
+        });
+    };
     return el(
         "div",
         { class: "caught" },
@@ -69,14 +83,7 @@ function caughtPanel(cell) {
                 `${cell.label}, run ${worst} (the worst)`,
                 still(ids.worst, exposure, `${cell.label}, run ${worst}`),
             ),
-            caughtFigure(
-                "its holes: share over true share",
-                holeMap(grid, {
-                    name: `run ${worst} of ${cell.label}`,
-                    colour: (hole) => colour(hole.ratios[worst]),
-                    describe,
-                }),
-            ),
+            caughtFigure("its holes: share over true share", holes()),
             el(
                 "div",
                 { class: "all-runs" },
@@ -96,6 +103,7 @@ function caughtPanel(cell) {
                 ),
             ),
         ),
+        saveButtons(name, strip),
     );
 }
 

@@ -54,20 +54,43 @@ const fileName = (name) =>
         .replace(/[^\p{L}\p{N}.=-]+/gu, "-")
         .replace(/^-|-$/g, "");
 
-/// A figure as `draw(paper)` makes it, with buttons that save it.
-function figure(name, draw, attributes = { class: "chart" }) {
-    const svgText = () => `<?xml version="1.0" encoding="UTF-8"?>\n${new XMLSerializer().serializeToString(paperFigure(draw).root)}\n`;
+/// Buttons that save what `draw(true)` makes.
+function saveButtons(name, draw) {
     const button = (kind, save) =>
         el("button", { type: "button", class: "save", "aria-label": `${name}: save as ${kind}`, onclick: save }, kind);
+    const svgText = () =>
+        `<?xml version="1.0" encoding="UTF-8"?>\n${new XMLSerializer().serializeToString(paperFigure(draw).root)}\n`;
     return el(
-        "figure",
-        attributes,
-        draw(false),
-        el(
-            "div",
-            { class: "saves" },
-            button("SVG", () => saveFile(`${fileName(name)}.svg`, "image/svg+xml", svgText())),
-            button("PDF", () => printAlone(paperFigure(draw))),
-        ),
+        "div",
+        { class: "saves" },
+        button("SVG", () => saveFile(`${fileName(name)}.svg`, "image/svg+xml", svgText())),
+        button("PDF", () => printAlone(paperFigure(draw))),
     );
+}
+
+/// A figure that is drawn the same on the screen and on paper.
+const figure = (name, draw) => el("figure", { class: "chart" }, draw(false), saveButtons(name, draw));
+
+/// Pictures side by side for paper, each { label, canvas } or { label, svg }, and below each its `crops`, canvases too.
+function pictureStrip(name, parts, { width = 2 * kPlotWidth, scale } = {}) {
+    const gap = 8,
+        each = (width - gap * (parts.length - 1)) / parts.length;
+    const embedded = (canvas, box) => svg("image", { ...box, href: canvas.toDataURL(), preserveAspectRatio: "none" });
+    const root = svg("g", {});
+    let bottom = 0;
+    parts.forEach(({ label, canvas, svg: drawing, aspect, crops = [] }, i) => {
+        const x = i * (each + gap),
+            height = each / aspect;
+        root.append(textAt(x + each / 2, 11, label, { "text-anchor": "middle" }));
+        const box = { x, y: 18, width: each, height };
+        root.append(canvas ? embedded(canvas, box) : setAttributes(drawing, box));
+        const cropWidth = (each - 4 * (crops.length - 1)) / crops.length;
+        crops.forEach((crop, k) => {
+            const at = { x: x + k * (cropWidth + 4), y: 22 + height, width: cropWidth, height: cropWidth / aspect };
+            root.append(embedded(crop.canvas, at), svg("rect", { ...at, fill: "none", stroke: crop.colour, "stroke-width": 1.5 }));
+        });
+        bottom = Math.max(bottom, 18 + height + (crops.length ? 4 + cropWidth / aspect : 0));
+    });
+    if (scale) root.append(colourScale(scale, scale.title, width / 2 - kPlotWidth / 2, bottom + 8, kPlotWidth));
+    return plotRoot(width, bottom + (scale ? 34 : 2), name, root);
 }

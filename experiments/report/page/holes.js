@@ -16,14 +16,29 @@ function ratioLimit(ratios) {
 const ratioColour = (limit) => (ratio) =>
     ratio > 0 ? diverging(clamp(Math.log(ratio) / Math.log(limit), -1, 1)) : null;
 
+let hatches = 0; // patterns need names of their own in the page
+
 /// An n×n map: one square per hole, told by hover or by the arrow keys; `colour` and `describe` take a hole.
 function holeMap(grid, { name, colour, describe, mark }) {
     const root = svg("svg", {
         class: "hole-map",
         viewBox: `0 0 ${grid.columns} ${grid.rows}`,
         role: "img",
+        "shape-rendering": "crispEdges",
         "aria-label": `${name}, ${grid.rows} × ${grid.columns} holes; arrow keys read them`,
     });
+    const hatch = `hatch-${++hatches}`;
+    root.append(
+        svg(
+            "defs",
+            {},
+            svg(
+                "pattern",
+                { id: hatch, width: 0.2, height: 0.2, patternUnits: "userSpaceOnUse", patternTransform: "rotate(45)" },
+                svg("rect", { width: 0.07, height: 0.2, fill: css("--muted") }),
+            ),
+        ),
+    );
     const squares = new Map();
     for (const hole of grid.holes) {
         const rgb = colour(hole);
@@ -33,7 +48,9 @@ function holeMap(grid, { name, colour, describe, mark }) {
             y: hole.row,
             width: 1,
             height: 1,
-            fill: rgb ? rgbToCss(rgb) : "none",
+            fill: rgb ? rgbToCss(rgb) : `url(#${hatch})`,
+            stroke: css("--paper"),
+            "stroke-width": 0.035,
         });
         withTooltip(square, () => describe(hole));
         squares.set(`${hole.row},${hole.column}`, { hole, square });
@@ -45,7 +62,8 @@ function holeMap(grid, { name, colour, describe, mark }) {
                     cx: hole.column + 0.5,
                     cy: hole.row + 0.5,
                     r: 0.13,
-                    fill: rgb ? contrastInk(rgb) : "currentColor",
+                    fill: rgb ? contrastInk(rgb) : css("--ink"),
+                    "shape-rendering": "auto",
                 }),
             );
     }
@@ -79,6 +97,15 @@ function describeHole(hole) {
     ].filter(Boolean);
 }
 
+/// The maps of a cell for paper, with their scale.
+function occupancyFigure(cell, scales, paperName) {
+    const map = (name, colour, mark) => ({ label: name, svg: holeMap(cell.grid, { name, colour, describe: describeHole, mark }), aspect: cell.grid.columns / cell.grid.rows });
+    return pictureStrip(paperName, [map(cell.label, (hole) => scales.ratio(hole.ratio), (hole) => hole.wrong)], {
+        width: kPlotWidth,
+        scale: { map: (t) => diverging(2 * t - 1), labels: ratioLabels(scales.limit), title: "share over true share" },
+    });
+}
+
 function occupancyCard(cell, scales) {
     const { grid } = cell;
     const small = (field, limit, name, show) => {
@@ -92,6 +119,7 @@ function occupancyCard(cell, scales) {
             el("figcaption", {}, `${name} `, el("b", {}, show(mean(values)))),
         );
     };
+    const paperName = `occupancy, ${cell.group.title}, ${cell.label}`;
     const facts = [
         isNumber(cell.wrongHoles) && `${cell.wrongHoles} of ${cell.judgedHoles}${cell.unjudgedHoles ? " tested" : ""} significantly wrong`,
         cell.unjudgedHoles > 0 && `${cell.unjudgedHoles} scatter too much to be tested`,
@@ -114,6 +142,7 @@ function occupancyCard(cell, scales) {
                     describe: describeHole,
                     mark: (hole) => hole.wrong,
                 }),
+                saveButtons(paperName, () => occupancyFigure(cell, scales, paperName)),
             ),
             el(
                 "div",
@@ -125,8 +154,8 @@ function occupancyCard(cell, scales) {
     );
 }
 
-const ratioBar = (limit) =>
-    colourBar((t) => diverging(2 * t - 1), [`1∕${plain(limit)}`, "1", plain(limit)], "share over true share");
+const ratioLabels = (limit) => [`1∕${plain(limit)}`, "1", plain(limit)];
+const ratioBar = (limit) => colourBar((t) => diverging(2 * t - 1), ratioLabels(limit), "share over true share");
 
 /// Places other than a grid of holes: a plain table.
 function featureTable(group) {
@@ -184,6 +213,7 @@ function occupancySection() {
             const largest = (field) => Math.max(0, ...holes.map((hole) => hole[field]).filter(isNumber));
             const limit = ratioLimit(holes.map((hole) => hole.ratio));
             const scales = {
+                limit,
                 ratio: ratioColour(limit),
                 sd: largest("relative_sd"),
                 jumps: largest("jumps_per_million"),

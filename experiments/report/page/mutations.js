@@ -47,6 +47,34 @@ function outcomeBar(shares, reasons) {
     return bar;
 }
 
+/// The bars of all mutations for paper, with a legend.
+function outcomeFigure(name, rows, outcomes, reasons) {
+    const colour = (outcome) => outcomeColour(outcome, reasons),
+        labels = rows.map(({ cell, name: mutation }) => `${cell.group.title}, ${cell.label}: ${mutation}`);
+    const left = Math.max(...labels.map((text) => textWidth(text))) + 8,
+        width = 2 * kPlotWidth,
+        bar = width - left,
+        root = svg("g", {});
+    let x = 0,
+        y = 10;
+    for (const outcome of outcomes) {
+        const needed = 16 + textWidth(outcome) + 14;
+        if (x + needed > width) [x, y] = [0, y + 16];
+        root.append(svg("rect", { x, y: y - 9, width: 10, height: 10, fill: colour(outcome) }), textAt(x + 14, y, outcome));
+        x += needed;
+    }
+    rows.forEach(({ shares }, i) => {
+        const top = y + 10 + 17 * i;
+        root.append(textAt(0, top + 10, labels[i]));
+        let at = left;
+        for (const [outcome, share] of shares) {
+            root.append(svg("rect", { x: at, y: top, width: share * bar, height: 12, fill: colour(outcome) }));
+            at += share * bar;
+        }
+    });
+    return plotRoot(width, y + 14 + 17 * rows.length, name, root);
+}
+
 function mutationsSection() {
     const judged = cells.filter((cell) => Object.keys(cell.mutation_statistics ?? {}).length);
     if (!judged.length) return null;
@@ -97,6 +125,7 @@ function mutationsSection() {
             el("td", {}, number(statistics.esjd_pixels)),
         );
     });
+    const name = "what became of the proposals";
     const head = (title, meaning) => el("th", { scope: "col", title: meaning }, title);
     return section(
         "mutations",
@@ -133,5 +162,6 @@ function mutationsSection() {
                 el("tbody", {}, body),
             ),
         ),
+        saveButtons(name, () => outcomeFigure(name, rows, columns, reasons)),
     );
 }

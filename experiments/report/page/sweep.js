@@ -151,7 +151,7 @@ function sweepMaps(sweep, [x, y]) {
             title: `ratio to ${drawn.flatMap((facet) => facet.cells.map((cell) => comparisonsOf(cell)[0]?.baseline)).find(Boolean)}`,
             value: ratioOf,
             colour: (ratio) => ratioColour(limit)(ratio),
-            bar: { map: (t) => diverging(2 * t - 1), labels: [`1∕${plain(limit)}`, "1", plain(limit)] },
+            bar: { map: (t) => diverging(2 * t - 1), labels: ratioLabels(limit) },
             mark: (cell) => comparisonsOf(cell)[0]?.verdict === "undecided",
         },
     ];

@@ -9,6 +9,13 @@ const kShows = [
     { id: "tests", key: "p", name: "p-values", map: (ids) => blockMap(ids.tests, testColour) },
 ];
 
+const errorScale = (title) => ({
+    map: magma,
+    labels: [0.01, 0.1, 1, 10].map(percent).map((text) => text.replace(".0", "")),
+    title,
+});
+const kTestScale = { map: (t) => diverging(2 * t - 1), labels: ["p ≤ 10⁻⁴", "1", "p ≤ 10⁻⁴"], title: "too dark · too bright" };
+
 class Viewer {
     constructor(group) {
         this.group = group;
@@ -92,6 +99,7 @@ class Viewer {
         this.tiles = this.entries.map((entry, i) => this.tile(entry, i));
         const columns = this.entries.filter((entry) => entry.kind !== "mean").length;
         this.legend = el("div", { class: "tile error-legend" });
+        const stripName = `pictures, ${this.group.title}`;
         const first = this.entries.findIndex((entry) => entry.kind === "mean");
         const tiles = [...this.tiles.slice(0, first), this.legend, ...this.tiles.slice(first)];
         return el(
@@ -104,6 +112,7 @@ class Viewer {
                 el("div", { class: "stage-box", style: `aspect-ratio: ${this.aspect}` }, this.stage, this.handles, this.divider),
                 this.readout,
                 this.controls(),
+                saveButtons(stripName, () => this.strip(stripName)),
             ),
             el(
                 "div",
@@ -187,23 +196,23 @@ class Viewer {
 
     /// What the colours mean.
     drawLegend() {
-        const errors = [0.01, 0.1, 1, 10].map(percent).map((text) => text.replace(".0", ""));
+        const bar = ({ map, labels, title }) => colourBar(map, labels, title);
         const legends = {
             error: [
-                colourBar(magma, errors, "relative error of a pixel"),
+                bar(errorScale("relative error of a pixel")),
                 "√ of the mean over channels of (x − r)² ∕ (r² + 0.01): what relMSE averages, before the square.",
             ],
             deviation: [
-                colourBar(magma, errors, "relative standard deviation"),
+                bar(errorScale("relative standard deviation")),
                 "Of luminance over runs, relative to √(mean² + 0.01): the error of one run that is noise. What is brighter in the map of errors is bias, or luck.",
             ],
             tests: [
-                colourBar((t) => diverging(2 * t - 1), ["p ≤ 10⁻⁴", "1", "p ≤ 10⁻⁴"], "too dark · too bright"),
+                bar(kTestScale),
                 "Is the mean over runs the reference? Welch’s test corrected for skewness, at a false discovery rate of 5 %. Grey: not judged, the runs scatter too much or not at all.",
             ],
         };
-        const [bar, text] = legends[this.state.show] ?? (this.reference ? legends.error : []);
-        this.legend.replaceChildren(...[bar, text && el("p", {}, text)].filter(Boolean));
+        const [ramp, text] = legends[this.state.show] ?? (this.reference ? legends.error : []);
+        this.legend.replaceChildren(...[ramp, text && el("p", {}, text)].filter(Boolean));
     }
 
     /// What the tests over a cell's map found, in words.
@@ -455,6 +464,29 @@ class Viewer {
         setAttributes(this.divider, { "aria-valuenow": Math.round(100 * state.split) });
     }
 
+    /// The pictures as they are shown now, their crops and the scale of what they show, for paper.
+    strip(name) {
+        const size = { width: 480, height: Math.round(480 / this.aspect) };
+        const painted = (view, entry) => {
+            const canvas = Object.assign(document.createElement("canvas"), size);
+            this.paintEntry(canvas.getContext("2d"), view, entry);
+            return canvas;
+        };
+        const parts = this.entries
+            .filter((entry) => entry.kind !== "mean")
+            .map((entry) => ({
+                label: entry.title,
+                aspect: this.aspect,
+                canvas: painted(this.state, entry),
+                crops: this.insets.map((inset, k) => ({
+                    canvas: painted({ zoom: 1 / inset.size, ...inset }, entry),
+                    colour: kInsetColours[k],
+                })),
+            }));
+        const scale = { error: errorScale("relative error"), deviation: errorScale("relative standard deviation"), tests: kTestScale }[this.state.show];
+        return pictureStrip(name, parts, { scale });
+    }
+
     draw() {
         const { state } = this;
         this.exposure.value = state.exposure;
@@ -495,6 +527,7 @@ class Viewer {
 }
 
 const viewers = [];
+const kInsetColours = ["#ff9d2e", "#5cc3ff"];
 
 /// The viewer nearest the middle of the window takes the keys.
 function activeViewer() {

@@ -10,6 +10,7 @@ import pathlib
 import re
 import sys
 import tempfile
+import xml.etree.ElementTree as xml
 
 from browser import DOWN, ENTER, LEFT, RIGHT, UP, check, complaints, data_of, report, run_tests, with_data
 
@@ -181,6 +182,31 @@ def moves_crops(browser):
     check(browser.pixels(crop) != moved, "the crop cannot be dragged")
 
 
+def saves_every_figure(browser):
+    """Each is well-formed SVG of its own, 90 or 180 mm wide or as it needs, with text."""
+    files = browser.call(
+        "POST",
+        "/execute/async",
+        {
+            "script": """const done = arguments[0], real = URL.createObjectURL, blobs = [];
+                URL.createObjectURL = (blob) => { blobs.push(blob.text()); return '#' };
+                const buttons = [...document.querySelectorAll('.save')].filter((b) => b.textContent === 'SVG');
+                buttons.forEach((b) => b.click());
+                URL.createObjectURL = real;
+                Promise.all(blobs).then((texts) => done(texts.map((text, i) => [buttons[i].ariaLabel, text])))""",
+            "args": [],
+        },
+    )
+    kinds = ("ratios of all", "relMSE against rays", "pictures, ", "what became of", "occupancy, ", "run 2 of mlt")
+    for kind in kinds:
+        check(any(name.startswith(kind) for name, _ in files), f"no figure '{kind}' among {[name for name, _ in files]}")
+    for name, text in files:
+        root = xml.fromstring(text)
+        width = float(root.get("width").removesuffix("mm"))
+        check(30 < width <= 181, f"{name}: {width} mm wide")
+        check(root.findall(".//{http://www.w3.org/2000/svg}text"), f"{name}: no text")
+
+
 def sorts_the_table(browser):
     columns = browser.run("return document.querySelectorAll('#cell-table thead th').length")
     index = browser.run(
@@ -306,6 +332,7 @@ def test_page(page):
         shows_the_worst_run,
         zooms_and_pans_together,
         moves_crops,
+        saves_every_figure,
         sorts_the_table,
         draws_hole_maps,
         chooses_the_caught_sampler,
