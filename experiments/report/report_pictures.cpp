@@ -251,6 +251,10 @@ private:
         auto chains = readChainData(plan.folder(), plan.result, most);
         if (!chains) return;
         ids["chains"] = std::move(chains->fields);
+        ids["chains"].update({{"replicate", plan.median},
+                              {"all", plan.result.value("chains", 0.0)},
+                              {"mutations", plan.result.value("mutations", 0.0)},
+                              {"mixing", plan.result.value("mixing", Json())}});
         ids["chains"]["data"] = elements_.add(Json::object(), chains->bytes);
     }
 

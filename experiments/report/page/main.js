@@ -30,6 +30,8 @@ function render() {
         cellsSection(),
         convergenceSection(),
         imagesSection(),
+        techniquesSection(),
+        chainsSection(),
         mutationsSection(),
         occupancySection(),
         caughtSection(),

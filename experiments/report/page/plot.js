@@ -104,7 +104,7 @@ function paperLegend(series, width) {
     const group = svg("g", {});
     let x = 4,
         y = 8;
-    for (const { label, colour, order, dashed } of series) {
+    for (const { label, colour, order, dashed, markless } of series) {
         const needed = 26 + textWidth(label) + 14;
         if (x + needed > width && x > 4) [x, y] = [4, y + 15];
         group.append(
@@ -117,7 +117,7 @@ function paperLegend(series, width) {
                 "stroke-width": 1.8,
                 "stroke-dasharray": dashed ? "5 3" : null,
             }),
-            pointMark(order, x + 10, y, colour),
+            markless ? "" : pointMark(order, x + 10, y, colour),
             textAt(x + 25, y + 4, label),
         );
         x += needed;
@@ -162,7 +162,7 @@ function plotFrame(y, { title, above = 0, height = kPlotHeight }) {
     return { left: 26 + Math.max(8, ...labels), right: kPlotWidth - 10, top, bottom: above + height - 38, height: above + height };
 }
 
-function seriesShapes({ points, colour, order, dashed, plainLine }, x, y) {
+function seriesShapes({ points, colour, order, dashed, plainLine, markless }, x, y) {
     const place = (p, value = p.y) => `${x.at(p.x).toFixed(1)} ${y.at(value).toFixed(1)}`;
     const bound = (p, side) => (isInterval(p.ci95) && (p.ci95[side] > 0 || !y.log) ? p.ci95[side] : p.y);
     const banded = points.some((p) => isInterval(p.ci95));
@@ -190,15 +190,15 @@ function seriesShapes({ points, colour, order, dashed, plainLine }, x, y) {
             d: `M${points.map((p) => place(p)).join("L")}`,
             fill: "none",
             stroke: colour,
-            "stroke-width": plainLine ? 1 : 1.8,
+            "stroke-width": plainLine || markless ? 1 : 1.8,
             "stroke-linejoin": "round",
             "stroke-dasharray": dashed ? "5 3" : null,
         }),
-        !plainLine && points.map((p) => pointMark(order, x.at(p.x), y.at(p.y), colour)),
+        !plainLine && !markless && points.map((p) => pointMark(order, x.at(p.x), y.at(p.y), colour)),
     ];
 }
 
-/// Lines with bands. x, y: axes as of makeScale; series: { label, colour, order, points: [{ x, y, ci95 }], dashed };
+/// Lines with bands. x, y: axes as of makeScale; series: { label, colour, order, points: [{ x, y, ci95 }], dashed, markless };
 /// guides: the same, without marks and not read; `describe(series, point)` fills the tooltip, by pointer or arrow keys.
 function linePlot({ name, title, x: xAxis, y: yAxis, series, guides = [], describe, paper, height }) {
     const legend = paper && series.length > 1 ? paperLegend(series, kPlotWidth) : null;

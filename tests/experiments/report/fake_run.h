@@ -89,6 +89,9 @@ private:
     static inline const std::array<FakeSampler, 3> kSamplers{
         {{"bdpt", 1.1, 0.03, false}, {"pssmlt", 0.55, 0.32, true}, {"mlt", 0.12, 0.55, true}}};
 
+    static constexpr int kChains = 16, kDraws = 64;
+    static inline const std::array<std::pair<int, int>, 5> kTechniques{{{0, 3}, {1, 2}, {2, 1}, {1, 3}, {2, 2}}};
+
     double normal() {  // Box and Muller: the standard library's distribution differs between libraries
         const double u = (double(random_()) + 1) / 4294967296.0, v = double(random_()) / 4294967296.0;
         return std::sqrt(-2 * std::log(u)) * std::cos(2 * kPi * v);
@@ -150,15 +153,7 @@ private:
             errors.push_back(relmse(image, reference));
             writeImage(fmt::format("cells/{}/r{:03}/image.exr", cell, r), image);
         }
-        writeJson(fmt::format("cells/{}/r000/result.json", cell),
-                  {{"schema_version", 1},
-                   {"scene", scene},
-                   {"sampler", sampler.name},
-                   {"seed", 1},
-                   {"non_finite", 0},
-                   {"bias_ledger",
-                    sampler.name == "pssmlt" ? Json::array({"normalisation refined by large steps"}) : Json::array()},
-                   {"image_sha256", std::string(64, 'a')}});
+        for (std::size_t r = 0; r < runs; ++r) writeReplicate(fmt::format("cells/{}/r{:03}", cell, r), scene, sampler, reference);
         std::vector<double> sorted = errors;
         std::sort(sorted.begin(), sorted.end());
         const auto rankOf = [&](double value) {
@@ -246,6 +241,54 @@ private:
                   {"seconds", 2.9},
                   {"esjd_pixels", 3.1}}}};
         return json;
+    }
+
+    /// What a replicate leaves beside its image: of bdpt the images of its techniques, of others their chains.
+    void writeReplicate(const std::string& folder, const std::string& scene, const FakeSampler& sampler,
+                        const Image& reference) {
+        Json result = {{"schema_version", 1},
+                       {"scene", scene},
+                       {"sampler", sampler.name},
+                       {"seed", 1},
+                       {"width", size_},
+                       {"height", size_},
+                       {"non_finite", 0},
+                       {"bias_ledger", sampler.name == "pssmlt" ? Json::array({"normalisation refined by large steps"})
+                                                                : Json::array()},
+                       {"image_sha256", std::string(64, 'a')}};
+        if (sampler.chains) {
+            const Json scalars = {"raster_x", "raster_y", "log_target", "path_length", "feature"};
+            result.update({{"chains", 100},
+                           {"mutations", 2.4e6},
+                           {"mixing", {{"draws_per_chain", kDraws}, {"feature", {{"split_rhat", 4.2}, {"ess", 51.0}}}}},
+                           {"traces", {{"file", "chains.npy"}, {"chains", kChains}, {"draws", kDraws}, {"scalars", scalars}}}});
+            writeBytes(folder + "/chains.npy", chains(sampler));
+        } else {
+            for (const auto& [s, t] : kTechniques)
+                for (const char* kind : {"weighted", "unweighted"}) {
+                    Image image = reference;
+                    for (Rgb& pixel : image.pixels) pixel *= float(kind[0] == 'w' ? s + 1 : 10) / 16;
+                    writeImage(fmt::format("{}/extra/s{:02}_t{:02}_{}.exr", folder, s, t, kind), image);
+                }
+        }
+        writeJson(folder + "/result.json", result);
+    }
+
+    /// A NumPy file of chains, each of which stays in one hole, but for pssmlt's, which go everywhere.
+    std::string chains(const FakeSampler& sampler) {
+        std::string header = fmt::format("{{'descr': '<f4', 'fortran_order': False, 'shape': ({}, {}, 5), }}", kChains, kDraws);
+        header.append(117 - header.size(), ' ');
+        std::string bytes = std::string("\x93NUMPY\x01\x00", 8) + char(header.size() + 1) + '\0' + header + '\n';
+        for (int chain = 0; chain < kChains; ++chain)
+            for (int draw = 0; draw < kDraws; ++draw) {
+                const int hole = (sampler.name == "mlt" ? 7 * chain : 11 * chain + 5 * draw) % (holes_ * holes_);
+                const double cell = double(size_) / holes_;
+                const std::array<float, 5> values{float((hole % holes_ + 0.5 + 0.1 * normal()) * cell),
+                                                  float((hole / holes_ + 0.5 + 0.1 * normal()) * cell), float(normal()),
+                                                  float(2 + draw % 3), float(hole)};
+                bytes.append(reinterpret_cast<const char*>(values.data()), sizeof values);
+            }
+        return bytes;
     }
 
     static double slopeOf(const FakeSampler& sampler) {
