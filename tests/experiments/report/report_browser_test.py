@@ -197,7 +197,7 @@ def saves_every_figure(browser):
             "args": [],
         },
     )
-    kinds = ("ratios of all", "relMSE against rays", "pictures, ", "what became of", "occupancy, ", "run 2 of mlt")
+    kinds = ("ratios of all", "relMSE against rays", "pictures, ", "what became of", "occupancy, ", "run ", "techniques, ", "ranks of ")
     for kind in kinds:
         check(any(name.startswith(kind) for name, _ in files), f"no figure '{kind}' among {[name for name, _ in files]}")
     for name, text in files:
