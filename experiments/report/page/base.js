@@ -137,6 +137,20 @@ function readByKeys(root, { first, step, show, hide }) {
 
 const line = (text) => el("div", {}, text);
 
+/// A place for what takes long to make: it is made once the page can be used, piece after piece in the order of the page.
+const waiting = [];
+function later(make) {
+    const place = el("div", { class: "later" });
+    waiting.push(() => place.replaceWith(make()));
+    return place;
+}
+function makeWaiting(whenDone) {
+    const make = waiting.shift();
+    if (!make) return whenDone();
+    make();
+    setTimeout(() => makeWaiting(whenDone));
+}
+
 function section(id, title, lead, ...children) {
     return el(
         "section",

@@ -123,7 +123,7 @@ function caughtSection() {
         "A chain caught in one hole",
         "One run of one sampler, the worst of its replicates by the primary metric: the picture may look free of noise while the brightness of its holes is wrong.",
         drawn.map(({ group, judged }) => {
-            const panel = el("div", {}, caughtPanel(judged[0]));
+            const panel = el("div", {}, later(() => caughtPanel(judged[0])));
             const choice = el(
                 "select",
                 {

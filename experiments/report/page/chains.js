@@ -248,7 +248,7 @@ function chainsSection() {
         "Chains",
         "Even ranks in every row: the chains agree. Uneven rows, traces that stay apart, and ρ around the mean of all chains (dashed) that stays up while ρ around a chain’s own mean falls: they are caught where they began.",
         drawn.map(({ group, judged }) => {
-            const panel = el("div", {}, chainPanel(judged[0]));
+            const panel = el("div", {}, later(() => chainPanel(judged[0])));
             const choice = el(
                 "select",
                 { "aria-label": `chains shown for ${group.title}`, onchange: () => panel.replaceChildren(chainPanel(judged[choice.selectedIndex])) },

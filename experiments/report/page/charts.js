@@ -110,10 +110,12 @@ function convergenceSection() {
                 { class: "group" },
                 el("h3", {}, group.title),
                 slopeLegend(group),
-                el(
-                    "div",
-                    { class: "charts" },
-                    kCosts.map(([cost, title]) => costChart(group, cost, title)),
+                later(() =>
+                    el(
+                        "div",
+                        { class: "charts" },
+                        kCosts.map(([cost, title]) => costChart(group, cost, title)),
+                    ),
                 ),
             ),
         ),

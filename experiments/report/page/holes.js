@@ -244,7 +244,7 @@ function occupancySection() {
                 el(
                     "div",
                     { class: "hole-cards" },
-                    withGrid.map((cell) => occupancyCard(cell, scales)),
+                    withGrid.map((cell) => later(() => occupancyCard(cell, scales))),
                 ),
                 featureTable(group),
             );

@@ -23,6 +23,7 @@ function subtitle() {
 }
 
 function render() {
+    waiting.length = 0;
     const name = summary.name ?? data.experiment?.name ?? "run";
     const sections = [
         verdictSection(),
@@ -50,8 +51,9 @@ function render() {
                 el("p", { class: "subtitle" }, subtitle()),
             ),
             el("nav", { "aria-label": "sections" }, links),
-            el("main", {}, ...[alarmBox()].filter(Boolean), ...sections),
+            el("main", { "aria-busy": "true" }, ...[alarmBox()].filter(Boolean), ...sections),
         );
+    setTimeout(() => makeWaiting(() => document.querySelector("main").removeAttribute("aria-busy")));
 }
 
 render();

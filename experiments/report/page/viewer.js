@@ -547,13 +547,18 @@ document.addEventListener("keydown", (e) => {
 
 function imagesSection() {
     viewers.splice(0).forEach((viewer) => viewer.resize.disconnect());
-    for (const group of groups) if (Viewer.has(group)) viewers.push(new Viewer(group));
-    if (!viewers.length) return null;
+    const shown = groups.filter((group) => Viewer.has(group));
+    if (!shown.length) return null;
+    const make = (group) => {
+        const viewer = new Viewer(group);
+        viewers.push(viewer);
+        return viewer.element;
+    };
     return section(
         "images",
         "Images",
         "Reference, one run, and the mean over runs of each sampler; zoom, pan and exposure are common to all." +
             (data.shrink > 1 ? ` Shown at 1∕${data.shrink} of their size to keep the page small.` : ""),
-        viewers.map((viewer) => el("div", { class: "group" }, el("h3", {}, viewer.group.title), viewer.element)),
+        shown.map((group) => el("div", { class: "group" }, el("h3", {}, group.title), later(() => make(group)))),
     );
 }

@@ -70,13 +70,14 @@ class Browser:
         self.settle()
 
     def settle(self):
-        """Waits until two frames are drawn: charts are made in one, observers answer in the next."""
+        """Waits until all is made and two frames are drawn: observers answer in the second."""
         self.call(
             "POST",
             "/execute/async",
             {
-                "script": "const done = arguments[0];"
-                "requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(done, 30)))",
+                "script": "const done = arguments[0], frames = () => document.querySelector('[aria-busy]')"
+                " ? setTimeout(frames, 10) : requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(done, 30)));"
+                "frames()",
                 "args": [],
             },
         )

@@ -4,6 +4,7 @@
 Without an argument the report is that of the made-up run of report_test.cpp, whose program lies beside $ULAM.
 """
 
+import base64
 import functools
 import json
 import pathlib
@@ -319,6 +320,50 @@ def survives_missing_data(browser, page):
             )
 
 
+def large_run(page, path):
+    """Eight samplers on eight scenes with as many pixels as the largest page holds: every cell a copy of one of three."""
+    data, width, height = data_of(page), 160, 90
+    known = {cell["cell"]: cell for cell in data["summary"]["cells"] if cell["scene"] == "hidden"}
+    cells, pictures, elements = [], {}, []
+    text = base64.b64encode(bytes(range(256)) * (width * height // 64)).decode()
+
+    def element():
+        data["images"].append({"width": width, "height": height})
+        elements.append(f'<script type="text/plain" id="image-{len(data["images"]) - 1}">{text}</script>')
+        return len(data["images"]) - 1
+
+    for scene in range(8):
+        reference = element()
+        for sampler in range(8):
+            cell = known[["hidden-bdpt", "hidden-pssmlt", "hidden-mlt"][sampler % 3]]
+            name, chains = f"scene{scene}-sampler{sampler}", data["pictures"][cell["cell"]].get("chains")
+            image = f"references/{scene}/image.exr"
+            cells.append({**cell, "cell": name, "scene": f"s{scene}", "sampler": f"m{sampler}", "reference_image": image})
+            pictures[name] = {"reference": reference, **{kind: element() for kind in ("mean", "median", "worst")}}
+            if chains:
+                pictures[name]["chains"] = chains
+    data["summary"].update(cells=cells, comparisons=[], verdicts=[])
+    return with_data(page, {**data, "pictures": pictures}, path, "".join(elements))
+
+
+def opens_a_large_run(browser, page):
+    """It can be used after two seconds of the processor, and everything is made in the end."""
+    with tempfile.TemporaryDirectory() as folder:
+        large = large_run(page, pathlib.Path(folder) / "report.html")
+        check(large.stat().st_size > 20e6, f"only {large.stat().st_size} bytes")
+        time_domain = {"timeDomain": "threadTicks"}  # not the clock's: other programs run beside the test
+        browser.call("POST", "/goog/cdp/execute", {"cmd": "Performance.enable", "params": time_domain})
+        browser.call("POST", "/url", {"url": large.as_uri()})
+        found = browser.call("POST", "/goog/cdp/execute", {"cmd": "Performance.getMetrics", "params": {}})["metrics"]
+        seconds = next(metric["value"] for metric in found if metric["name"] == "TaskDuration")
+        check(0.05 < seconds < 2, f"{seconds:.2f} s of the processor until it can be used")
+        browser.settle()
+    viewers = browser.run("return document.querySelectorAll('.viewer').length")
+    check(viewers == 8, f"{viewers} viewers")
+    said = complaints(browser)
+    check(not said, f"the console says {said}")
+
+
 def test_page(page):
     tests = [
         loads_without_errors,
@@ -341,7 +386,8 @@ def test_page(page):
         follows_the_colour_scheme,
         names_every_control,
     ]
-    return run_tests([*tests, functools.partial(survives_missing_data, page=page)], lambda browser: browser.open(page))
+    on_other_pages = [functools.partial(test, page=page) for test in (survives_missing_data, opens_a_large_run)]
+    return run_tests([*tests, *on_other_pages], lambda browser: browser.open(page))
 
 
 if __name__ == "__main__":
