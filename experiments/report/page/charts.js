@@ -121,3 +121,67 @@ function convergenceSection() {
         ),
     );
 }
+
+/// How much of the mean square error is brightness, which all pixels of a run share.
+function brightnessShare({ counts, density, brightness }) {
+    const pixels = sum(counts) + 1,
+        rest = sum(counts.map((n, i) => n * density[i])) / pixels;
+    return brightness / (brightness + rest);
+}
+
+function spectrumChart(group, judged) {
+    const name = `error spectrum, ${group.title}`;
+    return figure(name, (paper) => {
+        const series = judged.map((cell) => {
+            const { cycles_per_pixel: x, density, low, high } = cell.error_spectrum;
+            const points = x.map((frequency, i) => ({ x: frequency, y: density[i], ci95: [low[i], high[i]] }));
+            return cellSeries(cell, points.filter((p) => p.x > 0 && p.y > 0));
+        });
+        const all = series.flatMap((s) => s.points);
+        return linePlot({
+            name,
+            paper,
+            series,
+            x: { label: "cycles per pixel", log: true, values: all.map((p) => p.x) },
+            y: { label: "density of the error", log: true, values: withBounds(all) },
+            describe: (s, p) => [
+                el("b", {}, s.label),
+                line(`${number(p.y)}  (5–95 % of runs ${interval(p.ci95)})`),
+                line(`at ${number(p.x)} cycles per pixel`),
+            ],
+        });
+    });
+}
+
+function spectrumSection() {
+    const drawn = groups
+        .map((group) => ({ group, judged: group.cells.filter((cell) => cell.error_spectrum?.density?.some((d) => d > 0)) }))
+        .filter(({ judged }) => judged.length);
+    if (!drawn.length) return null;
+    return section(
+        "spectrum",
+        "Error spectrum",
+        "Power of the error images by frequency, mean over runs, band: 5 to 95 % of the runs. Noise that pixels do not share is flat; what rises to the left is shared by neighbours, like the blobs of caught chains.",
+        drawn.map(({ group, judged }) =>
+            el(
+                "div",
+                { class: "group" },
+                el("h3", {}, group.title),
+                el(
+                    "ul",
+                    { class: "legend" },
+                    judged.map((cell) =>
+                        el(
+                            "li",
+                            {},
+                            lineMark(cell),
+                            el("b", {}, cell.label),
+                            el("span", { class: "ci" }, ` brightness is ${percent(brightnessShare(cell.error_spectrum))} of the mean square`),
+                        ),
+                    ),
+                ),
+                later(() => el("div", { class: "charts single" }, spectrumChart(group, judged))),
+            ),
+        ),
+    );
+}

@@ -30,6 +30,7 @@ function render() {
         sweepSection(),
         cellsSection(),
         convergenceSection(),
+        spectrumSection(),
         imagesSection(),
         techniquesSection(),
         chainsSection(),

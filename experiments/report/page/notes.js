@@ -24,6 +24,10 @@ function allWarnings() {
 const biasLedgers = () =>
     cells.map((cell) => [cell, cell.result.bias_ledger ?? []]).filter(([, ledger]) => ledger.length);
 
+const warningItem = ([text, where]) =>
+    el("li", {}, text, where.length > 0 && el("span", { class: "where" }, ` ${where.join(", ")}`));
+const kShownWarnings = 6; // the rest of a long list is folded
+
 function alarmBox() {
     const warnings = allWarnings(),
         biased = biasLedgers();
@@ -34,9 +38,7 @@ function alarmBox() {
         el(
             "ul",
             {},
-            warnings.map(([text, where]) =>
-                el("li", {}, text, where.length > 0 && el("span", { class: "where" }, ` ${where.join(", ")}`)),
-            ),
+            warnings.slice(0, kShownWarnings).map(warningItem),
             biased.length > 0 &&
                 el(
                     "li",
@@ -46,6 +48,13 @@ function alarmBox() {
                     ".",
                 ),
         ),
+        warnings.length > kShownWarnings &&
+            el(
+                "details",
+                {},
+                el("summary", {}, `${warnings.length - kShownWarnings} more`),
+                el("ul", {}, warnings.slice(kShownWarnings).map(warningItem)),
+            ),
     );
 }
 

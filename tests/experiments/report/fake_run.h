@@ -187,6 +187,7 @@ private:
              {{"value", slopeOf(sampler)},
               {"ci95", {slopeOf(sampler) - 0.06, slopeOf(sampler) + 0.06}},
               {"flatter_than_minus_one", slopeOf(sampler) > -0.9}}},
+            {"error_spectrum", spectrum(sampler)},
             {"features", features(shares, sampler)},
             {"feature_grid", {holes_, holes_}},
             {"reference", "references/" + scene},
@@ -308,6 +309,22 @@ private:
                               {"ci95", {error * (0.9 - 0.03 * i), error * (1.11 + 0.05 * i)}}});
         }
         return points;
+    }
+
+    /// Flat noise, and of chains what neighbours share.
+    Json spectrum(const FakeSampler& sampler) const {
+        Json frequencies = Json::array(), density = Json::array(), low = Json::array(), high = Json::array(), counts = Json::array();
+        for (int i = 0; i < 18; ++i) {
+            const double frequency = std::exp2(i / 3.0 - 6) / 2, noise = sampler.pixelNoise * sampler.pixelNoise;
+            const double value = noise + std::pow(sampler.holeSpread, 2) / (0.1 + std::pow(holes_ * frequency, 2));
+            frequencies.push_back(frequency);
+            density.push_back(value);
+            low.push_back(value * 0.7);
+            high.push_back(value * 1.4);
+            counts.push_back(std::exp2(i / 1.5));
+        }
+        return {{"cycles_per_pixel", frequencies}, {"counts", counts}, {"density", density},
+                {"low", low},                      {"high", high},     {"brightness", 0.01 * sampler.holeSpread}};
     }
 
     Json features(const std::vector<std::vector<double>>& shares, const FakeSampler& sampler) const {

@@ -20,7 +20,7 @@ STAGE, EXPOSURE = f"{VIEWER} .stage", f"{VIEWER} .exposure"
 
 
 def loads_without_errors(browser):
-    for name in ("verdict", "cells", "convergence", "images", "mutations", "holes", "caught", "ledger", "provenance"):
+    for name in ("verdict", "cells", "convergence", "spectrum", "images", "mutations", "holes", "caught", "ledger", "provenance"):
         check(browser.run("return document.getElementById(arguments[0]) !== null", name), f"no section {name}")
     said = complaints(browser)
     check(not said, f"the console says {said}")
@@ -36,14 +36,14 @@ def asks_for_nothing(browser):
 
 def draws_every_chart(browser):
     """Every axis has at least two labels that do not overlap, within the figure, and every line its points."""
-    charts = browser.run("""return [...document.querySelectorAll('#convergence .chart > svg')].map((root) => {
+    charts = browser.run("""return [...document.querySelectorAll('#convergence .chart > svg, #spectrum .chart > svg')].map((root) => {
         const boxes = (selector) => [...root.querySelectorAll(selector)].map((node) => node.getBoundingClientRect());
         const outer = root.getBoundingClientRect(), x = boxes('.x-tick'), y = boxes('.y-tick');
         const overlaps = x.slice(1).filter((box, i) => box.left < x[i].right).length;
         const outside = boxes('text').filter((box) => box.left < outer.left - 1 || box.right > outer.right + 1 || box.bottom > outer.bottom + 1);
         return { x: x.length, y: y.length, overlaps, outside: outside.length, lines: root.querySelectorAll('.series path[stroke]').length };
     })""")
-    check(len(charts) >= 3, f"{len(charts)} charts")
+    check(len(charts) >= 5, f"{len(charts)} charts")
     for chart in charts:
         check(chart["x"] >= 2 and chart["y"] >= 2 and chart["lines"] >= 1, f"axes without labels or no lines: {chart}")
         check(chart["overlaps"] == 0 and chart["outside"] == 0, f"labels overlap or are cut: {chart}")
