@@ -12,7 +12,8 @@ function setAttributes(node, attributes) {
     for (const [name, value] of Object.entries(attributes)) {
         if (value === null || value === undefined || value === false) continue;
         if (name.startsWith("on")) node.addEventListener(name.slice(2), value);
-        else node.setAttribute(name, value === true ? "" : typeof value === "number" ? Number(value.toFixed(3)) : value);
+        else
+            node.setAttribute(name, value === true ? "" : typeof value === "number" ? Number(value.toFixed(3)) : value);
     }
     return node;
 }

@@ -59,13 +59,21 @@ function caughtPanel(cell) {
         exposure = reference ? fittingExposure(reference) : 0;
     const name = `run ${worst} of ${cell.label}, ${cell.group.title}`;
     const holes = () =>
-        holeMap(grid, { name: `run ${worst} of ${cell.label}`, colour: (hole) => colour(hole.ratios[worst]), describe });
+        holeMap(grid, {
+            name: `run ${worst} of ${cell.label}`,
+            colour: (hole) => colour(hole.ratios[worst]),
+            describe,
+        });
     const strip = () => {
         const pictures = [
             ["reference", picture(ids.reference)],
             [`${cell.label}, run ${worst}`, picture(ids.worst)],
         ].filter(([, image]) => image);
-        const parts = pictures.map(([label, image]) => ({ label, canvas: image.shown(exposure), aspect: image.width / image.height }));
+        const parts = pictures.map(([label, image]) => ({
+            label,
+            canvas: image.shown(exposure),
+            aspect: image.width / image.height,
+        }));
         parts.push({ label: "its holes: share over true share", svg: holes(), aspect: grid.columns / grid.rows });
         return pictureStrip(name, parts, {
             scale: { map: (t) => diverging(2 * t - 1), labels: ratioLabels(limit), title: "share over true share" },
@@ -123,7 +131,11 @@ function caughtSection() {
         "A chain caught in one hole",
         "One run of one sampler, the worst of its replicates by the primary metric: the picture may look free of noise while the brightness of its holes is wrong.",
         drawn.map(({ group, judged }) => {
-            const panel = el("div", {}, later(() => caughtPanel(judged[0])));
+            const panel = el(
+                "div",
+                {},
+                later(() => caughtPanel(judged[0])),
+            );
             const choice = el(
                 "select",
                 {

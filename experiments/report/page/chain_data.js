@@ -14,7 +14,8 @@ class Chains {
         const bytes = embeddedBytes(id),
             view = new DataView(bytes.buffer),
             n = chains * draws;
-        const words = (plane, map) => Float32Array.from({ length: n }, (_, i) => map(view.getUint16(2 * (plane * n + i), true) / 65535));
+        const words = (plane, map) =>
+            Float32Array.from({ length: n }, (_, i) => map(view.getUint16(2 * (plane * n + i), true) / 65535));
         const singles = (plane, map) => Float32Array.from({ length: n }, (_, i) => map(bytes[6 * n + plane * n + i]));
         this.values = {
             raster_x: words(0, (v) => v),
@@ -40,7 +41,7 @@ class Chains {
         const values = this.values[scalar],
             order = Uint32Array.from(values.keys()).sort((a, b) => values[a] - values[b]),
             counts = Array.from({ length: this.chains }, () => new Float64Array(bins));
-        for (let i = 0; i < order.length; ) {
+        for (let i = 0; i < order.length;) {
             let end = i + 1;
             while (end < order.length && values[order[end]] === values[order[i]]) ++end;
             // Spread over all classes that the tie covers, or ties would pile up in one.

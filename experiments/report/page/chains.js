@@ -41,17 +41,27 @@ function autocorrelationPlot(chains, scalar, cell, name, paper) {
             { ...look, label: "around a chain’s own mean, 10–90 % of chains", points },
             { ...look, label: "around the mean of all chains", points: common, dashed: true },
         ],
-        guides: [{ points: [{ x: 0, y: 0 }, { x: most, y: 0 }], colour: css("--muted"), dashed: true }],
+        guides: [
+            {
+                points: [
+                    { x: 0, y: 0 },
+                    { x: most, y: 0 },
+                ],
+                colour: css("--muted"),
+                dashed: true,
+            },
+        ],
         x: {
             label: turns >= 1 ? `lag in draws (a draw: about ${count(turns, plain)} mutations)` : "lag in draws",
             values: [0, most],
         },
         y: { label: "ρ", values: [0, 1, ...common.map((p) => p.y), ...points.flatMap((p) => p.ci95)] },
-        describe: (s, p) => [
-            el("b", {}, `lag ${p.x}: ρ = ${number(p.y)}`),
-            line(s.label),
-            p.ci95 && line(`10–90 % of chains ${interval(p.ci95)}`),
-        ].filter(Boolean),
+        describe: (s, p) =>
+            [
+                el("b", {}, `lag ${p.x}: ρ = ${number(p.y)}`),
+                line(s.label),
+                p.ci95 && line(`10–90 % of chains ${interval(p.ci95)}`),
+            ].filter(Boolean),
     });
 }
 
@@ -68,23 +78,61 @@ function rankPlot(chains, scalar, name, paper) {
     const root = plotRoot(kPlotWidth, kPlotHeight + 26, name);
     root.append(
         textAt((frame.left + frame.right) / 2, 13, "ranks", { "text-anchor": "middle", "font-weight": 600 }),
-        textAt(11, (frame.top + frame.bottom) / 2, "chain", { "text-anchor": "middle", fill: css("--muted"), transform: `rotate(-90 11 ${(frame.top + frame.bottom) / 2})` }),
+        textAt(11, (frame.top + frame.bottom) / 2, "chain", {
+            "text-anchor": "middle",
+            fill: css("--muted"),
+            transform: `rotate(-90 11 ${(frame.top + frame.bottom) / 2})`,
+        }),
         textAt(frame.left - 6, frame.top + 9, "1", { "text-anchor": "end" }),
         textAt(frame.left - 6, frame.bottom, chains.chains, { "text-anchor": "end" }),
-        textAt((frame.left + frame.right) / 2, frame.bottom + 31, "rank of a draw among the draws of all chains", { "text-anchor": "middle", fill: css("--muted") }),
-        ...[0, 0.5, 1].map((v) => textAt(frame.left + v * (frame.right - frame.left), frame.bottom + 15, `${100 * v} %`, { "text-anchor": "middle" })),
+        textAt((frame.left + frame.right) / 2, frame.bottom + 31, "rank of a draw among the draws of all chains", {
+            "text-anchor": "middle",
+            fill: css("--muted"),
+        }),
+        ...[0, 0.5, 1].map((v) =>
+            textAt(frame.left + v * (frame.right - frame.left), frame.bottom + 15, `${100 * v} %`, {
+                "text-anchor": "middle",
+            }),
+        ),
     );
-    const place = (row, column) => ({ x: frame.left + column * columnWidth, y: frame.top + row * rowHeight, width: columnWidth, height: rowHeight });
-    const describe = (row, column) => [el("b", {}, `chain ${row + 1}`), line(`${number(counts[row][column])} draws in this class of ranks; ${number(expected)} if chains agree`)];
+    const place = (row, column) => ({
+        x: frame.left + column * columnWidth,
+        y: frame.top + row * rowHeight,
+        width: columnWidth,
+        height: rowHeight,
+    });
+    const describe = (row, column) => [
+        el("b", {}, `chain ${row + 1}`),
+        line(`${number(counts[row][column])} draws in this class of ranks; ${number(expected)} if chains agree`),
+    ];
     counts.forEach((own, row) =>
         own.forEach((n, column) => {
-            const square = svg("rect", { ...place(row, column), fill: rgbToCss(colour(n)), "shape-rendering": "crispEdges" });
+            const square = svg("rect", {
+                ...place(row, column),
+                fill: rgbToCss(colour(n)),
+                "shape-rendering": "crispEdges",
+            });
             if (!paper) withTooltip(square, () => describe(row, column));
             root.append(square);
         }),
     );
-    const cursor = svg("rect", { fill: "none", stroke: css("--link"), "stroke-width": 2, visibility: "hidden", "pointer-events": "none" });
-    root.append(cursor, colourScale({ map: (t) => diverging(2 * t - 1), labels: ratioLabels(limit) }, "draws over expected", frame.left, kPlotHeight + 2, frame.right - frame.left));
+    const cursor = svg("rect", {
+        fill: "none",
+        stroke: css("--link"),
+        "stroke-width": 2,
+        visibility: "hidden",
+        "pointer-events": "none",
+    });
+    root.append(
+        cursor,
+        colourScale(
+            { map: (t) => diverging(2 * t - 1), labels: ratioLabels(limit) },
+            "draws over expected",
+            frame.left,
+            kPlotHeight + 2,
+            frame.right - frame.left,
+        ),
+    );
     if (!paper)
         readByKeys(root, {
             first: [0, 0],
@@ -186,12 +234,25 @@ function mixingTable(chains) {
         el(
             "table",
             {},
-            el("thead", {}, el("tr", {}, ["scalar", ...columns.map(readableName)].map((title) => el("th", { scope: "col" }, title)))),
+            el(
+                "thead",
+                {},
+                el(
+                    "tr",
+                    {},
+                    ["scalar", ...columns.map(readableName)].map((title) => el("th", { scope: "col" }, title)),
+                ),
+            ),
             el(
                 "tbody",
                 {},
                 rows.map(([scalar, found]) =>
-                    el("tr", {}, el("th", { scope: "row" }, readableName(scalar)), columns.map((column) => el("td", {}, number(found[column])))),
+                    el(
+                        "tr",
+                        {},
+                        el("th", { scope: "row" }, readableName(scalar)),
+                        columns.map((column) => el("td", {}, number(found[column]))),
+                    ),
                 ),
             ),
         ),
@@ -217,7 +278,11 @@ function chainPanel(cell) {
     const { scalars } = chains;
     const choice = el(
         "select",
-        { "aria-label": `scalar for ${cell.label} on ${cell.group.title}`, class: "scalar", onchange: () => draw(scalars[choice.selectedIndex]) },
+        {
+            "aria-label": `scalar for ${cell.label} on ${cell.group.title}`,
+            class: "scalar",
+            onchange: () => draw(scalars[choice.selectedIndex]),
+        },
         scalars.map(({ name }) => el("option", {}, name)),
     );
     if (scalars.length) draw(scalars[0]);
@@ -233,7 +298,13 @@ function chainPanel(cell) {
             "div",
             { class: "chain-panel" },
             new ChainFilm(cell, chains).element,
-            el("div", {}, scalars.length > 0 && el("label", { class: "choice" }, "scalar ", choice), plots, mixingTable(chains)),
+            el(
+                "div",
+                {},
+                scalars.length > 0 && el("label", { class: "choice" }, "scalar ", choice),
+                plots,
+                mixingTable(chains),
+            ),
         ),
     );
 }
@@ -248,10 +319,17 @@ function chainsSection() {
         "Chains",
         "Even ranks in every row: the chains agree. Uneven rows, traces that stay apart, and ρ around the mean of all chains (dashed) that stays up while ρ around a chain’s own mean falls: they are caught where they began.",
         drawn.map(({ group, judged }) => {
-            const panel = el("div", {}, later(() => chainPanel(judged[0])));
+            const panel = el(
+                "div",
+                {},
+                later(() => chainPanel(judged[0])),
+            );
             const choice = el(
                 "select",
-                { "aria-label": `chains shown for ${group.title}`, onchange: () => panel.replaceChildren(chainPanel(judged[choice.selectedIndex])) },
+                {
+                    "aria-label": `chains shown for ${group.title}`,
+                    onchange: () => panel.replaceChildren(chainPanel(judged[choice.selectedIndex])),
+                },
                 judged.map((cell) => el("option", {}, cell.label)),
             );
             return el("div", { class: "group" }, el("h3", {}, group.title, " ", choice), panel);

@@ -7,7 +7,12 @@ const kCosts = [
 ];
 
 /// A cell's line in a plot of `points`, in the look that it has in every figure.
-const cellSeries = (cell, points) => ({ label: cell.label, colour: samplerColour(cell.order), order: cell.order, points });
+const cellSeries = (cell, points) => ({
+    label: cell.label,
+    colour: samplerColour(cell.order),
+    order: cell.order,
+    points,
+});
 
 /// A dashed line of slope −1 from the upper left, to compare by eye.
 function guide(series) {
@@ -135,7 +140,10 @@ function spectrumChart(group, judged) {
         const series = judged.map((cell) => {
             const { cycles_per_pixel: x, density, low, high } = cell.error_spectrum;
             const points = x.map((frequency, i) => ({ x: frequency, y: density[i], ci95: [low[i], high[i]] }));
-            return cellSeries(cell, points.filter((p) => p.x > 0 && p.y > 0));
+            return cellSeries(
+                cell,
+                points.filter((p) => p.x > 0 && p.y > 0),
+            );
         });
         const all = series.flatMap((s) => s.points);
         return linePlot({
@@ -155,7 +163,10 @@ function spectrumChart(group, judged) {
 
 function spectrumSection() {
     const drawn = groups
-        .map((group) => ({ group, judged: group.cells.filter((cell) => cell.error_spectrum?.density?.some((d) => d > 0)) }))
+        .map((group) => ({
+            group,
+            judged: group.cells.filter((cell) => cell.error_spectrum?.density?.some((d) => d > 0)),
+        }))
         .filter(({ judged }) => judged.length);
     if (!drawn.length) return null;
     return section(
@@ -176,7 +187,11 @@ function spectrumSection() {
                             {},
                             lineMark(cell),
                             el("b", {}, cell.label),
-                            el("span", { class: "ci" }, ` brightness is ${percent(brightnessShare(cell.error_spectrum))} of the mean square`),
+                            el(
+                                "span",
+                                { class: "ci" },
+                                ` brightness is ${percent(brightnessShare(cell.error_spectrum))} of the mean square`,
+                            ),
                         ),
                     ),
                 ),

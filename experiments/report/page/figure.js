@@ -87,7 +87,10 @@ function pictureStrip(name, parts, { width = 2 * kPlotWidth, scale } = {}) {
         const cropWidth = (each - 4 * (crops.length - 1)) / crops.length;
         crops.forEach((crop, k) => {
             const at = { x: x + k * (cropWidth + 4), y: 22 + height, width: cropWidth, height: cropWidth / aspect };
-            root.append(embedded(crop.canvas, at), svg("rect", { ...at, fill: "none", stroke: crop.colour, "stroke-width": 1.5 }));
+            root.append(
+                embedded(crop.canvas, at),
+                svg("rect", { ...at, fill: "none", stroke: crop.colour, "stroke-width": 1.5 }),
+            );
         });
         bottom = Math.max(bottom, 18 + height + (crops.length ? 4 + cropWidth / aspect : 0));
     });

@@ -99,11 +99,29 @@ function describeHole(hole) {
 
 /// The maps of a cell for paper, with their scale.
 function occupancyFigure(cell, scales, paperName) {
-    const map = (name, colour, mark) => ({ label: name, svg: holeMap(cell.grid, { name, colour, describe: describeHole, mark }), aspect: cell.grid.columns / cell.grid.rows });
-    return pictureStrip(paperName, [map(cell.label, (hole) => scales.ratio(hole.ratio), (hole) => hole.wrong)], {
-        width: kPlotWidth,
-        scale: { map: (t) => diverging(2 * t - 1), labels: ratioLabels(scales.limit), title: "share over true share" },
+    const map = (name, colour, mark) => ({
+        label: name,
+        svg: holeMap(cell.grid, { name, colour, describe: describeHole, mark }),
+        aspect: cell.grid.columns / cell.grid.rows,
     });
+    return pictureStrip(
+        paperName,
+        [
+            map(
+                cell.label,
+                (hole) => scales.ratio(hole.ratio),
+                (hole) => hole.wrong,
+            ),
+        ],
+        {
+            width: kPlotWidth,
+            scale: {
+                map: (t) => diverging(2 * t - 1),
+                labels: ratioLabels(scales.limit),
+                title: "share over true share",
+            },
+        },
+    );
 }
 
 function occupancyCard(cell, scales) {
@@ -121,7 +139,8 @@ function occupancyCard(cell, scales) {
     };
     const paperName = `occupancy, ${cell.group.title}, ${cell.label}`;
     const facts = [
-        isNumber(cell.wrongHoles) && `${cell.wrongHoles} of ${cell.judgedHoles}${cell.unjudgedHoles ? " tested" : ""} significantly wrong`,
+        isNumber(cell.wrongHoles) &&
+            `${cell.wrongHoles} of ${cell.judgedHoles}${cell.unjudgedHoles ? " tested" : ""} significantly wrong`,
         cell.unjudgedHoles > 0 && `${cell.unjudgedHoles} scatter too much to be tested`,
         isNumber(cell.holeError) && `${percent(cell.holeError)} RMS in one run`,
     ].filter(Boolean);
@@ -170,7 +189,11 @@ function featureTable(group) {
                     el("td", { class: "text" }, name),
                     el("td", {}, percent(f.share), el("span", { class: "ci" }, interval(f.share_ci95, percent))),
                     el("td", {}, percent(f.truth)),
-                    el("td", { class: isNumber(f.p_adjusted) && f.p_adjusted <= 0.05 ? "alarming" : null }, pValue(f.p_adjusted)),
+                    el(
+                        "td",
+                        { class: isNumber(f.p_adjusted) && f.p_adjusted <= 0.05 ? "alarming" : null },
+                        pValue(f.p_adjusted),
+                    ),
                     el("td", {}, percent(f.relative_sd)),
                     el("td", {}, number(f.jumps_per_million)),
                 ),

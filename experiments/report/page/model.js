@@ -55,9 +55,7 @@ for (const cell of cells) {
     if (!cell.grid) continue;
     cell.unjudgedHoles = cell.grid.holes.filter((hole) => isNumber(hole.truth) && !isNumber(hole.p_adjusted)).length;
     cell.judgedHoles = cell.grid.holes.filter((hole) => isNumber(hole.p_adjusted)).length;
-    cell.wrongHoles = cell.judgedHoles > 0
-        ? cell.grid.holes.filter((hole) => hole.wrong).length
-        : null;
+    cell.wrongHoles = cell.judgedHoles > 0 ? cell.grid.holes.filter((hole) => hole.wrong).length : null;
     cell.holeErrors = replicateHoleErrors(cell.grid);
     const known = cell.holeErrors.filter(isNumber);
     cell.holeError = known.length ? rootMeanSquare(known) : null;
@@ -76,12 +74,14 @@ for (const cell of cells) {
 }
 /// "holes" of "scenes.hidden.holes", "mlt.chains" of "samplers.mlt.chains".
 const pathName = (path) => path.replace(/^(scenes\.[^.]+|samplers)\./, "");
-const valueText = (value) => (isNumber(value) ? plain(value) : typeof value === "string" ? value : JSON.stringify(value));
+const valueText = (value) =>
+    isNumber(value) ? plain(value) : typeof value === "string" ? value : JSON.stringify(value);
 const settingsText = (entries) => entries.map(([path, value]) => `${pathName(path)} = ${valueText(value)}`).join(", ");
 
 /// The swept values that all these cells share, and others of their scene do not.
 function sharedSettings(cells, others) {
-    const same = (all, path, value) => all.every((cell) => JSON.stringify(cell.sweep?.[path]) === JSON.stringify(value));
+    const same = (all, path, value) =>
+        all.every((cell) => JSON.stringify(cell.sweep?.[path]) === JSON.stringify(value));
     return Object.entries(cells[0].sweep ?? {}).filter(
         ([path, value]) => same(cells, path, value) && !same(others, path, value),
     );
@@ -89,13 +89,19 @@ function sharedSettings(cells, others) {
 
 for (const group of groups) {
     const twins = groups.filter((other) => other.scene === group.scene);
-    const shared = sharedSettings(group.cells, twins.flatMap((other) => other.cells));
+    const shared = sharedSettings(
+        group.cells,
+        twins.flatMap((other) => other.cells),
+    );
     const settings = settingsText(shared) || `${twins.indexOf(group) + 1}`;
     group.title = twins.length === 1 ? group.scene : `${group.scene} (${settings})`;
     group.id = `scene-${groups.indexOf(group)}`;
     for (const cell of group.cells) {
         const own = group.cells.filter((other) => other.sampler === cell.sampler);
-        const settings = settingsText(own.length > 1 ? sharedSettings([cell], own) : []).replaceAll(`${cell.sampler}.`, "");
+        const settings = settingsText(own.length > 1 ? sharedSettings([cell], own) : []).replaceAll(
+            `${cell.sampler}.`,
+            "",
+        );
         cell.label = own.length === 1 ? cell.sampler : settings ? `${cell.sampler} (${settings})` : cell.cell;
         cell.order = own.length === 1 ? samplerNames.indexOf(cell.sampler) : group.cells.indexOf(cell);
     }

@@ -60,7 +60,10 @@ function outcomeFigure(name, rows, outcomes, reasons) {
     for (const outcome of outcomes) {
         const needed = 16 + textWidth(outcome) + 14;
         if (x + needed > width) [x, y] = [0, y + 16];
-        root.append(svg("rect", { x, y: y - 9, width: 10, height: 10, fill: colour(outcome) }), textAt(x + 14, y, outcome));
+        root.append(
+            svg("rect", { x, y: y - 9, width: 10, height: 10, fill: colour(outcome) }),
+            textAt(x + 14, y, outcome),
+        );
         x += needed;
     }
     rows.forEach(({ shares }, i) => {

@@ -21,11 +21,7 @@ class Picture {
         const scale = Array.from({ length: 32 }, (_, e) => 2 ** (e - 24));
         const out = new Float32Array(3 * this.width * this.height);
         for (let i = 0, j = 0; j < out.length; i += 4, j += 3) {
-            const word =
-                bytes[i] |
-                (bytes[i + 1] << 8) |
-                (bytes[i + 2] << 16) |
-                (bytes[i + 3] << 24);
+            const word = bytes[i] | (bytes[i + 1] << 8) | (bytes[i + 2] << 16) | (bytes[i + 3] << 24);
             const unit = scale[word >>> 27];
             out[j] = (word & 511) * unit;
             out[j + 1] = ((word >>> 9) & 511) * unit;

@@ -72,12 +72,21 @@ function makeScale({ label, values, log = false, names = null, format = plain, t
 
 const kMarks = [
     (x, y, r) => svg("circle", { cx: x, cy: y, r }),
-    (x, y, r) => svg("path", { d: `M${x} ${y - 1.3 * r}l${1.3 * r} ${1.3 * r}l${-1.3 * r} ${1.3 * r}l${-1.3 * r} ${-1.3 * r}z` }),
+    (x, y, r) =>
+        svg("path", {
+            d: `M${x} ${y - 1.3 * r}l${1.3 * r} ${1.3 * r}l${-1.3 * r} ${1.3 * r}l${-1.3 * r} ${-1.3 * r}z`,
+        }),
     (x, y, r) => svg("path", { d: `M${x} ${y - 1.2 * r}l${1.2 * r} ${2.1 * r}h${-2.4 * r}z` }),
     (x, y, r) => svg("rect", { x: x - 0.9 * r, y: y - 0.9 * r, width: 1.8 * r, height: 1.8 * r }),
     (x, y, r) => svg("path", { d: `M${x} ${y + 1.2 * r}l${1.2 * r} ${-2.1 * r}h${-2.4 * r}z` }),
-    (x, y, r, colour) => svg("path", { d: `M${x - r} ${y - r}l${2 * r} ${2 * r}m0 ${-2 * r}l${-2 * r} ${2 * r}`, stroke: colour, "stroke-width": 1.8 }),
-    (x, y, r, colour) => svg("path", { d: `M${x - r} ${y}h${2 * r}m${-r} ${-r}v${2 * r}`, stroke: colour, "stroke-width": 1.8 }),
+    (x, y, r, colour) =>
+        svg("path", {
+            d: `M${x - r} ${y - r}l${2 * r} ${2 * r}m0 ${-2 * r}l${-2 * r} ${2 * r}`,
+            stroke: colour,
+            "stroke-width": 1.8,
+        }),
+    (x, y, r, colour) =>
+        svg("path", { d: `M${x - r} ${y}h${2 * r}m${-r} ${-r}v${2 * r}`, stroke: colour, "stroke-width": 1.8 }),
     (x, y, r, colour) => svg("circle", { cx: x, cy: y, r, stroke: colour, "stroke-width": 1.6, "fill-opacity": 0.01 }),
 ];
 const pointMark = (order, x, y, colour, r = 3.4) =>
@@ -157,9 +166,17 @@ function axes(x, y, frame) {
 
 /// The place left for data: room for the longest label of the vertical axis, and for a title.
 function plotFrame(y, { title, above = 0, height = kPlotHeight }) {
-    const labels = makeScale(y, 1, 0).ticks(9).map((tick) => textWidth(tick.text));
+    const labels = makeScale(y, 1, 0)
+        .ticks(9)
+        .map((tick) => textWidth(tick.text));
     const top = above + (title ? 22 : 8);
-    return { left: 26 + Math.max(8, ...labels), right: kPlotWidth - 10, top, bottom: above + height - 38, height: above + height };
+    return {
+        left: 26 + Math.max(8, ...labels),
+        right: kPlotWidth - 10,
+        top,
+        bottom: above + height - 38,
+        height: above + height,
+    };
 }
 
 function seriesShapes({ points, colour, order, dashed, plainLine, markless }, x, y) {
@@ -212,7 +229,11 @@ function linePlot({ name, title, x: xAxis, y: yAxis, series, guides = [], descri
         frame.height,
         name,
         legend?.group,
-        title && textAt((frame.left + frame.right) / 2, frame.top - 7, title, { "text-anchor": "middle", "font-weight": 600 }),
+        title &&
+            textAt((frame.left + frame.right) / 2, frame.top - 7, title, {
+                "text-anchor": "middle",
+                "font-weight": 600,
+            }),
         axes(x, y, frame),
         svg(
             "svg",
@@ -240,11 +261,14 @@ function readPoints(root, series, place, ring, describe) {
     root.addEventListener("pointermove", (e) => {
         const box = root.getBoundingClientRect(),
             unit = kPlotWidth / box.width;
-        const distance = (p) => Math.hypot(...place(p).map((v, i) => v - unit * (i ? e.clientY - box.top : e.clientX - box.left)));
+        const distance = (p) =>
+            Math.hypot(...place(p).map((v, i) => v - unit * (i ? e.clientY - box.top : e.clientX - box.left)));
         let best = [Infinity];
-        lines.forEach((s, line) => s.points.forEach((p, i) => (best = distance(p) < best[0] ? [distance(p), line, i] : best)));
+        lines.forEach((s, line) =>
+            s.points.forEach((p, i) => (best = distance(p) < best[0] ? [distance(p), line, i] : best)),
+        );
         if (best[0] < 30) tooltip.show(show(best.slice(1))[0], e.clientX, e.clientY);
-        else hide(), tooltip.hide();
+        else (hide(), tooltip.hide());
     });
     root.addEventListener("pointerleave", () => {
         hide();
@@ -280,7 +304,14 @@ function colourScale({ map, labels }, title, x, y, width, ring) {
     group.append(textAt(x + half - 8, y + 9, title, { "text-anchor": "end", fill: muted }));
     if (ring)
         group.append(
-            svg("circle", { cx: x + half - 8 - textWidth("undecided") - 8, cy: y + 20, r: 3.5, fill: "none", stroke: css("--ink"), "stroke-width": 1.5 }),
+            svg("circle", {
+                cx: x + half - 8 - textWidth("undecided") - 8,
+                cy: y + 20,
+                r: 3.5,
+                fill: "none",
+                stroke: css("--ink"),
+                "stroke-width": 1.5,
+            }),
             textAt(x + half - 8, y + 24, "undecided", { "text-anchor": "end", fill: muted }),
         );
     return group;

@@ -101,7 +101,10 @@ function difficultySeries(facet, axis) {
 
 function difficultyPlots(sweep, axis) {
     const others = sweep.paths.filter((path) => sweep.crosses(path, axis));
-    const drawn = facets(sweep.judged, others).map((facet) => ({ ...facet, series: () => difficultySeries(facet, axis) }));
+    const drawn = facets(sweep.judged, others).map((facet) => ({
+        ...facet,
+        series: () => difficultySeries(facet, axis),
+    }));
     const points = drawn.flatMap((facet) => facet.series().flatMap((s) => s.points));
     return el(
         "div",
@@ -128,8 +131,14 @@ function difficultyPlots(sweep, axis) {
 function mapFacets(sweep, x, y) {
     const others = sweep.paths.filter((path) => sweep.crosses(path, x) && sweep.crosses(path, y));
     return samplerNames.flatMap((sampler) => {
-        const own = sweep.judged.filter((cell) => cell.sampler === sampler && x.path in cell.sweep && y.path in cell.sweep);
-        return facets(own, others).map((facet) => ({ ...facet, sampler, title: [sampler, facet.title].filter(Boolean).join(", ") }));
+        const own = sweep.judged.filter(
+            (cell) => cell.sampler === sampler && x.path in cell.sweep && y.path in cell.sweep,
+        );
+        return facets(own, others).map((facet) => ({
+            ...facet,
+            sampler,
+            title: [sampler, facet.title].filter(Boolean).join(", "),
+        }));
     });
 }
 
@@ -176,19 +185,30 @@ function describeSweepCell(cell) {
         el("b", {}, `${cell.sampler}, ${settingsText(Object.entries(cell.sweep))}`),
         line(`${metricName(primaryMetric)} ${number(error)}${isInterval(ci95) ? ` (${interval(ci95)})` : ""}`),
         comparison &&
-            line(`${number(comparison.ratio)} × ${comparison.baseline}’s${isInterval(comparison.ci95) ? ` (${interval(comparison.ci95)})` : ""}, p = ${pValue(comparison.p_adjusted ?? comparison.p)}: ${comparison.verdict}`),
+            line(
+                `${number(comparison.ratio)} × ${comparison.baseline}’s${isInterval(comparison.ci95) ? ` (${interval(comparison.ci95)})` : ""}, p = ${pValue(comparison.p_adjusted ?? comparison.p)}: ${comparison.verdict}`,
+            ),
     ].filter(Boolean);
 }
 
 /// A square per cell, its value in it; a ring marks what is undecided. Hover and the arrow keys read it.
 function heatMap({ name, title, x, y, cells: shown, kind, paper }) {
-    const frame = plotFrame({ label: "", names: y.values.map(valueText), values: [] }, { title, height: kPlotHeight - 8 });
+    const frame = plotFrame(
+        { label: "", names: y.values.map(valueText), values: [] },
+        { title, height: kPlotHeight - 8 },
+    );
     const xScale = makeScale({ label: x.name, names: x.values.map(valueText), values: [] }, frame.left, frame.right),
         yScale = makeScale({ label: y.name, names: y.values.map(valueText), values: [] }, frame.bottom, frame.top);
     const width = (frame.right - frame.left) / x.values.length,
         height = (frame.bottom - frame.top) / y.values.length;
     const root = plotRoot(kPlotWidth, frame.height + 34, name, axes(xScale, yScale, frame));
-    if (title) root.append(textAt((frame.left + frame.right) / 2, frame.top - 7, title, { "text-anchor": "middle", "font-weight": 600 }));
+    if (title)
+        root.append(
+            textAt((frame.left + frame.right) / 2, frame.top - 7, title, {
+                "text-anchor": "middle",
+                "font-weight": 600,
+            }),
+        );
     const squares = new Map();
     for (const cell of shown) {
         const [column, row] = [x.index(cell.sweep[x.path]), y.index(cell.sweep[y.path])],
@@ -200,8 +220,16 @@ function heatMap({ name, title, x, y, cells: shown, kind, paper }) {
         const square = svg(
             "g",
             { "data-cell": cell.cell },
-            svg("rect", { x: cx - width / 2, y: cy - height / 2, width, height, fill: rgbToCss(rgb), stroke: css("--paper") }),
-            textWidth(text) < width - 6 && height > 14 &&
+            svg("rect", {
+                x: cx - width / 2,
+                y: cy - height / 2,
+                width,
+                height,
+                fill: rgbToCss(rgb),
+                stroke: css("--paper"),
+            }),
+            textWidth(text) < width - 6 &&
+                height > 14 &&
                 textAt(cx, cy + 4, text, { "text-anchor": "middle", fill: contrastInk(rgb) }),
             kind.mark?.(cell) &&
                 svg("circle", {
@@ -218,14 +246,32 @@ function heatMap({ name, title, x, y, cells: shown, kind, paper }) {
         if (!paper) withTooltip(square, () => describeSweepCell(cell));
         root.append(square);
     }
-    const cursor = svg("rect", { width, height, fill: "none", stroke: css("--link"), "stroke-width": 2.5, visibility: "hidden", "pointer-events": "none" });
-    root.append(cursor, colourScale(kind.bar, kind.title, frame.left, frame.height + 2, frame.right - frame.left, Boolean(kind.mark)));
+    const cursor = svg("rect", {
+        width,
+        height,
+        fill: "none",
+        stroke: css("--link"),
+        "stroke-width": 2.5,
+        visibility: "hidden",
+        "pointer-events": "none",
+    });
+    root.append(
+        cursor,
+        colourScale(kind.bar, kind.title, frame.left, frame.height + 2, frame.right - frame.left, Boolean(kind.mark)),
+    );
     if (!paper)
         readByKeys(root, {
             first: [0, y.values.length - 1],
-            step: ([column, row], dx, dy) => [clamp(column + dx, 0, x.values.length - 1), clamp(row - dy, 0, y.values.length - 1)],
+            step: ([column, row], dx, dy) => [
+                clamp(column + dx, 0, x.values.length - 1),
+                clamp(row - dy, 0, y.values.length - 1),
+            ],
             show: ([column, row]) => {
-                setAttributes(cursor, { x: xScale.at(column) - width / 2, y: yScale.at(row) - height / 2, visibility: "visible" });
+                setAttributes(cursor, {
+                    x: xScale.at(column) - width / 2,
+                    y: yScale.at(row) - height / 2,
+                    visibility: "visible",
+                });
                 const found = squares.get(`${column},${row}`);
                 return [found ? describeSweepCell(found.cell) : "not run", cursor];
             },
@@ -237,7 +283,12 @@ function heatMap({ name, title, x, y, cells: shown, kind, paper }) {
 function sweepFigures(sweep) {
     const plots = el("div", { class: "difficulty" }),
         maps = el("div", { class: "maps" });
-    const pairs = sweep.paths.flatMap((y, i) => sweep.paths.slice(i + 1).filter((x) => sweep.crosses(x, y)).map((x) => [x, y]));
+    const pairs = sweep.paths.flatMap((y, i) =>
+        sweep.paths
+            .slice(i + 1)
+            .filter((x) => sweep.crosses(x, y))
+            .map((x) => [x, y]),
+    );
     const choose = (label, options, names, show) => {
         if (options.length) show(options[0]);
         if (options.length < 2) return null;

@@ -61,7 +61,12 @@ class Pyramid {
                 ` ${kind}`,
             ),
         );
-        const fit = el("input", { type: "checkbox", class: "pyramid-fit", checked: true, onchange: () => set({ fit: fit.checked }) });
+        const fit = el("input", {
+            type: "checkbox",
+            class: "pyramid-fit",
+            checked: true,
+            onchange: () => set({ fit: fit.checked }),
+        });
         const exposure = el("input", {
             type: "range",
             min: -6,
@@ -156,7 +161,12 @@ function techniquesSection() {
         "Techniques",
         "Median run. A path of s vertices from the light and t from the camera (s, t) · share of the picture’s light. Weighted pictures add up to the whole; unweighted, each is what the technique alone would make, noise included.",
         withTechniques.map((cell) =>
-            el("div", { class: "group" }, el("h3", {}, `${cell.group.title}: ${cell.label}`), later(() => new Pyramid(cell).element)),
+            el(
+                "div",
+                { class: "group" },
+                el("h3", {}, `${cell.group.title}: ${cell.label}`),
+                later(() => new Pyramid(cell).element),
+            ),
         ),
     );
 }

@@ -99,7 +99,9 @@ function forestFigure(name) {
             const cell = cells.find((other) => comparisonsOf(other).includes(c));
             return `${cell?.group.title ?? c.scene}: ${cell?.label ?? c.sampler}`;
         }),
-        texts = judged.map((c) => `${number(c.ratio, 2)}${isInterval(c.ci95) ? ` (${interval(c.ci95, (v) => number(v, 2))})` : ""}`);
+        texts = judged.map(
+            (c) => `${number(c.ratio, 2)}${isInterval(c.ci95) ? ` (${interval(c.ci95, (v) => number(v, 2))})` : ""}`,
+        );
     const row = 18,
         top = 22,
         left = Math.max(...labels.map((text) => textWidth(text))) + 12,
@@ -113,12 +115,19 @@ function forestFigure(name) {
     root.append(
         svg("line", { x1: x.at(1), x2: x.at(1), y1: top - 6, y2: bottom, stroke: muted, "stroke-dasharray": "3 3" }),
         svg("line", { x1: left, x2: right, y1: bottom, y2: bottom, stroke: muted }),
-        textAt((left + right) / 2, bottom + 29, `${metricName(primaryMetric)} over that of ${[...new Set(judged.map((c) => c.baseline))].join(", ")}`, { "text-anchor": "middle", fill: muted }),
+        textAt(
+            (left + right) / 2,
+            bottom + 29,
+            `${metricName(primaryMetric)} over that of ${[...new Set(judged.map((c) => c.baseline))].join(", ")}`,
+            { "text-anchor": "middle", fill: muted },
+        ),
         textAt(right + 8, 10, "ratio (95 %)", { fill: muted }),
-        ...x.spacedTicks().flatMap((tick) => [
-            svg("line", { x1: tick.at, x2: tick.at, y1: bottom, y2: bottom + 4, stroke: muted }),
-            textAt(tick.at, bottom + 15, tick.text, { "text-anchor": "middle" }),
-        ]),
+        ...x
+            .spacedTicks()
+            .flatMap((tick) => [
+                svg("line", { x1: tick.at, x2: tick.at, y1: bottom, y2: bottom + 4, stroke: muted }),
+                textAt(tick.at, bottom + 15, tick.text, { "text-anchor": "middle" }),
+            ]),
     );
     judged.forEach((c, i) => {
         const y = top + row * (i + 0.5),
@@ -128,7 +137,14 @@ function forestFigure(name) {
                 textAt(0, y + 4, labels[i]),
                 isInterval(c.ci95) &&
                     c.ci95[0] > 0 &&
-                    svg("line", { x1: x.at(c.ci95[0]), x2: x.at(c.ci95[1]), y1: y, y2: y, stroke: colour, "stroke-width": 2 }),
+                    svg("line", {
+                        x1: x.at(c.ci95[0]),
+                        x2: x.at(c.ci95[1]),
+                        y1: y,
+                        y2: y,
+                        stroke: colour,
+                        "stroke-width": 2,
+                    }),
                 svg("circle", { cx: x.at(c.ratio), cy: y, r: 4, fill: colour }),
                 textAt(right + 8, y + 4, texts[i]),
             ].filter(Boolean),

@@ -14,12 +14,26 @@ const errorScale = (title) => ({
     labels: [0.01, 0.1, 1, 10].map(percent).map((text) => text.replace(".0", "")),
     title,
 });
-const kTestScale = { map: (t) => diverging(2 * t - 1), labels: ["p ≤ 10⁻⁴", "1", "p ≤ 10⁻⁴"], title: "too dark · too bright" };
+const kTestScale = {
+    map: (t) => diverging(2 * t - 1),
+    labels: ["p ≤ 10⁻⁴", "1", "p ≤ 10⁻⁴"],
+    title: "too dark · too bright",
+};
 
 class Viewer {
     constructor(group) {
         this.group = group;
-        this.state = { zoom: 1, u: 0.5, v: 0.5, exposure: 0, show: "tones", worst: false, shown: 0, split: null, left: 0 };
+        this.state = {
+            zoom: 1,
+            u: 0.5,
+            v: 0.5,
+            exposure: 0,
+            show: "tones",
+            worst: false,
+            shown: 0,
+            split: null,
+            left: 0,
+        };
         this.reference = this.comparableReference();
         this.entries = this.makeEntries();
         const first = this.entries[0].picture;
@@ -109,7 +123,13 @@ class Viewer {
                 "div",
                 { class: "stage-side" },
                 this.stageTitle,
-                el("div", { class: "stage-box", style: `aspect-ratio: ${this.aspect}` }, this.stage, this.handles, this.divider),
+                el(
+                    "div",
+                    { class: "stage-box", style: `aspect-ratio: ${this.aspect}` },
+                    this.stage,
+                    this.handles,
+                    this.divider,
+                ),
                 this.readout,
                 this.controls(),
                 saveButtons(stripName, () => this.strip(stripName)),
@@ -289,7 +309,14 @@ class Viewer {
     /// Between the picture on the left and the one shown.
     splitDivider() {
         const move = (by) => this.set({ split: this.state.split + by });
-        const divider = el("div", { class: "split-divider", role: "slider", tabindex: 0, "aria-label": "divider between two pictures", "aria-valuemin": 0, "aria-valuemax": 100 });
+        const divider = el("div", {
+            class: "split-divider",
+            role: "slider",
+            tabindex: 0,
+            "aria-label": "divider between two pictures",
+            "aria-valuemin": 0,
+            "aria-valuemax": 100,
+        });
         divider.addEventListener("keydown", (e) => {
             const step = { ArrowLeft: -1, ArrowRight: 1 }[e.key];
             if (!step) return;
@@ -302,7 +329,9 @@ class Viewer {
             divider.setPointerCapture(e.pointerId);
             const dragging = (m) => move(m.movementX / this.stage.clientWidth);
             divider.addEventListener("pointermove", dragging);
-            divider.addEventListener("pointerup", () => divider.removeEventListener("pointermove", dragging), { once: true });
+            divider.addEventListener("pointerup", () => divider.removeEventListener("pointermove", dragging), {
+                once: true,
+            });
         });
         return divider;
     }
@@ -378,7 +407,8 @@ class Viewer {
         if (pan && document.activeElement === this.stage)
             this.set({ u: state.u + (pan[0] * 0.1) / state.zoom, v: state.v + (pan[1] * 0.1) / state.zoom });
         else if (/^[1-9]$/.test(e.key) && Number(e.key) <= this.entries.length) this.set({ shown: Number(e.key) - 1 });
-        else if (this.shows.some(({ key }) => key === e.key)) this.toggleShow(this.shows.find(({ key }) => key === e.key).id);
+        else if (this.shows.some(({ key }) => key === e.key))
+            this.toggleShow(this.shows.find(({ key }) => key === e.key).id);
         else if (e.key === "s") this.set({ split: state.split === null ? 0.5 : null });
         else if (e.key === "w") this.set({ worst: !state.worst });
         else if (e.key === "0") this.reset();
@@ -483,7 +513,11 @@ class Viewer {
                     colour: kInsetColours[k],
                 })),
             }));
-        const scale = { error: errorScale("relative error"), deviation: errorScale("relative standard deviation"), tests: kTestScale }[this.state.show];
+        const scale = {
+            error: errorScale("relative error"),
+            deviation: errorScale("relative standard deviation"),
+            tests: kTestScale,
+        }[this.state.show];
         return pictureStrip(name, parts, { scale });
     }
 
@@ -559,6 +593,13 @@ function imagesSection() {
         "Images",
         "Reference, one run, and the mean over runs of each sampler; zoom, pan and exposure are common to all." +
             (data.shrink > 1 ? ` Shown at 1∕${data.shrink} of their size to keep the page small.` : ""),
-        shown.map((group) => el("div", { class: "group" }, el("h3", {}, group.title), later(() => make(group)))),
+        shown.map((group) =>
+            el(
+                "div",
+                { class: "group" },
+                el("h3", {}, group.title),
+                later(() => make(group)),
+            ),
+        ),
     );
 }

@@ -56,7 +56,9 @@ def autocorrelation_tells_them_apart(browser):
         browser.press(key)
         text = browser.run(TOOLTIP)
         check("lag 1: ρ = " in text, f"the arrow keys read '{text}'")
-        values.append(float(text.split("ρ = ")[1].split("around")[0].replace("−", "-").replace("\u2009×\u200910⁻⁴", "e-4")))
+        values.append(
+            float(text.split("ρ = ")[1].split("around")[0].replace("−", "-").replace("\u2009×\u200910⁻⁴", "e-4"))
+        )
     check(abs(values[0]) < 0.2 and values[1] > 0.9, f"ρ at lag 1: own mean {values[0]}, common mean {values[1]}")
     browser.run("document.activeElement.blur()")
 

@@ -112,10 +112,12 @@ def chooses_the_swept_value(browser):
 
 def draws_maps(browser):
     """Errors and ratios over both values: 12 squares each, and rings exactly where a verdict is undecided."""
-    maps = browser.run("""return [...document.querySelectorAll('#sweep figure')].filter((f) => f.querySelector('[data-cell]'))
+    maps = browser.run(
+        """return [...document.querySelectorAll('#sweep figure')].filter((f) => f.querySelector('[data-cell]'))
         .map((f) => ({ cells: [...f.querySelectorAll('[data-cell]')].map((g) => g.dataset.cell),
                        rings: [...f.querySelectorAll('[data-cell]:has(.undecided)')].map((g) => g.dataset.cell),
-                       fills: [...f.querySelectorAll('[data-cell] rect')].map((r) => r.getAttribute('fill')) }))""")
+                       fills: [...f.querySelectorAll('[data-cell] rect')].map((r) => r.getAttribute('fill')) }))"""
+    )
     check([len(m["cells"]) for m in maps] == [12, 12], f"{[len(m['cells']) for m in maps]} squares")
     check(len(set(maps[0]["fills"])) >= 8, "the map of errors has too few colours")
     expected = {c["cell"] for c in made_up_sweep()["summary"]["comparisons"] if c["verdict"] == "undecided"}
@@ -165,7 +167,10 @@ def saves_svg(browser):
         root = xml.fromstring(text)
         check(root.tag == f"{SVG}svg" and root.get("width") == "90.00mm", f"{root.tag} {root.get('width')} wide")
         check(len(root.findall(f".//{SVG}text")) > 8, "text is not text")
-        check("class=" not in re.sub(r'class="(series|band|[xy]-tick|undecided)"', "", text) and "var(" not in text, "it needs a style sheet")
+        check(
+            "class=" not in re.sub(r'class="(series|band|[xy]-tick|undecided)"', "", text) and "var(" not in text,
+            "it needs a style sheet",
+        )
     words = [node.text for node in xml.fromstring(saved[0]).iter(f"{SVG}text")]
     check({"bdpt", "mlt", "holes", "relMSE"} <= set(words), f"the file's words are {words}")
 

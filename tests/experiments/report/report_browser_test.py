@@ -20,7 +20,18 @@ STAGE, EXPOSURE = f"{VIEWER} .stage", f"{VIEWER} .exposure"
 
 
 def loads_without_errors(browser):
-    for name in ("verdict", "cells", "convergence", "spectrum", "images", "mutations", "holes", "caught", "ledger", "provenance"):
+    for name in (
+        "verdict",
+        "cells",
+        "convergence",
+        "spectrum",
+        "images",
+        "mutations",
+        "holes",
+        "caught",
+        "ledger",
+        "provenance",
+    ):
         check(browser.run("return document.getElementById(arguments[0]) !== null", name), f"no section {name}")
     said = complaints(browser)
     check(not said, f"the console says {said}")
@@ -36,13 +47,15 @@ def asks_for_nothing(browser):
 
 def draws_every_chart(browser):
     """Every axis has at least two labels that do not overlap, within the figure, and every line its points."""
-    charts = browser.run("""return [...document.querySelectorAll('#convergence .chart > svg, #spectrum .chart > svg')].map((root) => {
+    charts = browser.run(
+        """return [...document.querySelectorAll('#convergence .chart > svg, #spectrum .chart > svg')].map((root) => {
         const boxes = (selector) => [...root.querySelectorAll(selector)].map((node) => node.getBoundingClientRect());
         const outer = root.getBoundingClientRect(), x = boxes('.x-tick'), y = boxes('.y-tick');
         const overlaps = x.slice(1).filter((box, i) => box.left < x[i].right).length;
         const outside = boxes('text').filter((box) => box.left < outer.left - 1 || box.right > outer.right + 1 || box.bottom > outer.bottom + 1);
         return { x: x.length, y: y.length, overlaps, outside: outside.length, lines: root.querySelectorAll('.series path[stroke]').length };
-    })""")
+    })"""
+    )
     check(len(charts) >= 5, f"{len(charts)} charts")
     for chart in charts:
         check(chart["x"] >= 2 and chart["y"] >= 2 and chart["lines"] >= 1, f"axes without labels or no lines: {chart}")
@@ -126,7 +139,10 @@ def splits_the_stage(browser):
     divider = f"{VIEWER} .split-divider"
     browser.focus(divider)
     browser.press(*[RIGHT] * 15)
-    check(browser.run("return document.querySelector(arguments[0]).ariaValueNow", divider) == "80", "the arrow keys do not move it")
+    check(
+        browser.run("return document.querySelector(arguments[0]).ariaValueNow", divider) == "80",
+        "the arrow keys do not move it",
+    )
     check(browser.run(halves, STAGE)[1] != shown[1], "the picture does not follow the divider")
     browser.drag(divider, -200, 0)
     now = float(browser.run("return document.querySelector(arguments[0]).ariaValueNow", divider))
@@ -198,9 +214,20 @@ def saves_every_figure(browser):
             "args": [],
         },
     )
-    kinds = ("ratios of all", "relMSE against rays", "pictures, ", "what became of", "occupancy, ", "run ", "techniques, ", "ranks of ")
+    kinds = (
+        "ratios of all",
+        "relMSE against rays",
+        "pictures, ",
+        "what became of",
+        "occupancy, ",
+        "run ",
+        "techniques, ",
+        "ranks of ",
+    )
     for kind in kinds:
-        check(any(name.startswith(kind) for name, _ in files), f"no figure '{kind}' among {[name for name, _ in files]}")
+        check(
+            any(name.startswith(kind) for name, _ in files), f"no figure '{kind}' among {[name for name, _ in files]}"
+        )
     for name, text in files:
         root = xml.fromstring(text)
         width = float(root.get("width").removesuffix("mm"))
@@ -308,7 +335,9 @@ def survives_missing_data(browser, page):
     variants["comparisons"]["summary"].update(comparisons=[], verdicts=[], warnings=[])
     variants["cells"] = {"summary": {}, "results": {}, "pictures": {}, "images": [], "shrink": 1}
     variants["pictures"] = {**without(), "pictures": {}}
-    variants["numbers"] = json.loads(re.sub(r"(?<=[:\[,])-?\d+\.\d+(e-?\d+)?", "null", json.dumps(whole, separators=(",", ":"))))
+    variants["numbers"] = json.loads(
+        re.sub(r"(?<=[:\[,])-?\d+\.\d+(e-?\d+)?", "null", json.dumps(whole, separators=(",", ":")))
+    )
     with tempfile.TemporaryDirectory() as folder:
         for name, data in variants.items():
             browser.open(with_data(page, data, pathlib.Path(folder) / "report.html"))
@@ -338,7 +367,9 @@ def large_run(page, path):
             cell = known[["hidden-bdpt", "hidden-pssmlt", "hidden-mlt"][sampler % 3]]
             name, chains = f"scene{scene}-sampler{sampler}", data["pictures"][cell["cell"]].get("chains")
             image = f"references/{scene}/image.exr"
-            cells.append({**cell, "cell": name, "scene": f"s{scene}", "sampler": f"m{sampler}", "reference_image": image})
+            cells.append(
+                {**cell, "cell": name, "scene": f"s{scene}", "sampler": f"m{sampler}", "reference_image": image}
+            )
             pictures[name] = {"reference": reference, **{kind: element() for kind in ("mean", "median", "worst")}}
             if chains:
                 pictures[name]["chains"] = chains
