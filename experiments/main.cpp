@@ -72,6 +72,7 @@ ExitCode runProgram(int argc, char* argv[]) {
     ulam::addListCommand(app);
     ulam::addSchemaCommand(app);
     ulam::addReportCommand(app);
+    ulam::addReferenceCommand(app);
     ulam::addNewCommand(app);
     ulam::addBenchCommand(app);
     ulam::addVerifyCommand(app);

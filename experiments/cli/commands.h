@@ -13,6 +13,7 @@ void addSceneCommand(CLI::App& app);
 void addListCommand(CLI::App& app);
 void addSchemaCommand(CLI::App& app);
 void addReportCommand(CLI::App& app);
+void addReferenceCommand(CLI::App& app);
 void addNewCommand(CLI::App& app);
 void addBenchCommand(CLI::App& app);
 void addVerifyCommand(CLI::App& app);

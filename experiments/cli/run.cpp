@@ -69,8 +69,7 @@ Json plannedJson(const Plan& plan, const PlanEstimate& estimate) {
         note(planned["cells"][i], estimate.cells[i], plan.cells[i].task.replicates);
     for (std::size_t i = 0; i < plan.references.size(); ++i)
         if (plan.references[i].spec.kind == ReferenceSpec::Kind::Sampler)
-            note(planned["references"][plan.references[i].key], estimate.references[i],
-                 plan.references[i].task.replicates);
+            note(planned["references"][plan.references[i].key], estimate.references[i], 1);
     note(planned, estimate.total(plan), 1);
     planned["tried_cells"] = estimate.tried;
     planned["warnings"] = replicateWarnings(plan);

@@ -139,8 +139,11 @@ PlanEstimate estimatePlan(const Plan& plan, int threads) {
         if (estimate.cells[c].bytes == 0) estimate.cells[c] = {sum.seconds / count, sum.bytes / count};
     }
     for (const PlannedReference& reference : plan.references) {
-        const bool made = reference.spec.kind == ReferenceSpec::Kind::Sampler && !isCached(reference);
-        estimate.references.push_back(made ? estimateReplicate(reference.task, threads) : Cost{});
+        Cost& all = estimate.references.emplace_back();
+        if (reference.spec.kind != ReferenceSpec::Kind::Sampler) continue;
+        const int missing = std::max(0, reference.task.replicates - cachedParts(reference));
+        const Cost part = estimateReplicate(reference.task, threads);
+        all = {part.seconds * missing, 2 * part.bytes};  // image and variance: the parts are removed
     }
     return estimate;
 }
@@ -151,9 +154,9 @@ Cost PlanEstimate::total(const Plan& plan) const {
         sum.seconds += cells[c].seconds * plan.cells[c].task.replicates;
         sum.bytes += cells[c].bytes * plan.cells[c].task.replicates;
     }
-    for (std::size_t i = 0; i < references.size(); ++i) {
-        sum.seconds += references[i].seconds * plan.references[i].task.replicates;
-        sum.bytes += 2 * references[i].bytes;  // image and variance: the parts are removed
+    for (const Cost& reference : references) {
+        sum.seconds += reference.seconds;
+        sum.bytes += reference.bytes;
     }
     return sum;
 }

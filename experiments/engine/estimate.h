@@ -22,7 +22,7 @@ inline constexpr std::size_t kTriedCells = 100;
 
 struct PlanEstimate {
     std::vector<Cost> cells;       ///< of one replicate of each
-    std::vector<Cost> references;  ///< of a part of each; none where it is cached or not made by a sampler
+    std::vector<Cost> references;  ///< of each, the parts that the cache does not hold; none where no sampler makes it
     std::size_t tried = 0;             ///< cells that were
 
     /// Of everything together. Space is that of the run's folder when it is done, without tables and report.

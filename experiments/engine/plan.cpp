@@ -127,7 +127,6 @@ private:
                                part(spec.budget.rays)};
                 identity["task"] = task.hash();
                 identity["program"] = programHash();  // another build may have another bug
-                identity["replicates"] = spec.replicates;
                 break;
             }
         }

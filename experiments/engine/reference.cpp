@@ -10,7 +10,6 @@
 #include "core/image/metrics.h"
 #include "experiments/engine/provenance.h"
 #include "experiments/engine/replicate.h"
-#include "experiments/statistics/holm.h"
 
 namespace ulam {
 namespace {
@@ -18,10 +17,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kFiles[] = {"image.exr", "variance.exr", "result.json"};
-
-fs::path folderOf(const PlannedReference& reference, const fs::path& runDir) {
-    return runDir / "references" / reference.key;
-}
 
 void write(const PlannedReference& reference, const fs::path& folder, const Image& image, const Image& variance,
            Json result) {
@@ -43,17 +38,21 @@ void write(const PlannedReference& reference, const fs::path& folder, const Imag
     writeFileAtomically(folder / "result.json", dump(fields) + "\n");
 }
 
-/// The cache is a convenience: where it cannot be written, the next run makes the reference again.
-void fillCache(const fs::path& folder, const std::string& key) {
-    const fs::path temporary = referenceCache() / temporaryName();
+/// The cache is a convenience: where it cannot be written, the next run makes the reference again. An entry of fewer parts
+/// gives way.
+void fillCache(const fs::path& folder, const std::string& key, bool isBetter) {
+    if (!isBetter) return;
+    const fs::path temporary = referenceCache() / temporaryName(), old = referenceCache() / temporaryName();
     std::error_code error;
     try {
         makeFolder(temporary);
         for (const char* file : kFiles) writeFileAtomically(temporary / file, readFile(folder / file));
+        fs::rename(referenceCache() / key, old, error);
         fs::rename(temporary, referenceCache() / key, error);  // fails where another process was faster
     } catch (const Error&) {
     }
     fs::remove_all(temporary, error);
+    fs::remove_all(old, error);
 }
 
 Json sharesJson(const Features& features, const std::vector<statistics::MeanEstimate>& shares) {
@@ -120,20 +119,27 @@ Reference load(const PlannedReference& reference, const fs::path& folder) {
     checkSize(reference, loaded.image, image);
     checkSize(reference, loaded.variance, variance);
     requireVariance(loaded.variance, variance);
-    if (reference.spec.kind == ReferenceSpec::Kind::Sampler) loaded.halvesAgree = result.at("halves_agree").boolean();
+    if (reference.spec.kind == ReferenceSpec::Kind::Sampler) {
+        loaded.halvesAgree = result.at("halves_agree").boolean();
+        loaded.parts = static_cast<int>(result.at("replicates").integer());
+    }
     loaded.featureShares = sharesFromJson(reference.scene->scene.features, result.at("feature_shares"));
     return loaded;
 }
 
-bool isIntact(const PlannedReference& reference, const fs::path& folder) {
+std::optional<Reference> loadIntact(const PlannedReference& reference, const fs::path& folder) {
     try {
-        load(reference, folder);
-        return true;
+        return load(reference, folder);
     } catch (const UnreadableFile&) {
         throw;
     } catch (const Error&) {
-        return false;
+        return {};
     }
+}
+
+/// Parts that a sampler has to make all in all.
+int wantedParts(const PlannedReference& reference) {
+    return reference.spec.kind == ReferenceSpec::Kind::Sampler ? reference.task.replicates : 0;
 }
 
 /// Its parts stay: each is checked on its own.
@@ -142,17 +148,16 @@ void discard(const fs::path& folder) {
     for (const char* file : kFiles) fs::remove_all(folder / file, ignored);
 }
 
-/// False where the cache does not hold it; a damaged entry would stand in the way of the next one and is removed.
-bool takeFromCache(const PlannedReference& reference, const fs::path& folder) {
+/// Takes what the cache holds where that is more than `parts`; a damaged entry would stand in the way of the next one and
+/// is removed.
+void takeFromCache(const PlannedReference& reference, const fs::path& folder, int parts) {
     const fs::path cached = referenceCache() / reference.key;
-    if (!isCached(reference)) {
-        std::error_code ignored;
-        fs::remove_all(cached, ignored);
-        return false;
-    }
+    const int found = cachedParts(reference);
+    std::error_code ignored;
+    if (found == 0) fs::remove_all(cached, ignored);
+    if (found <= parts) return;
     makeFolder(folder);
     for (const char* file : kFiles) writeFileAtomically(folder / file, readFile(cached / file));
-    return true;
 }
 
 void writeTruth(const PlannedReference& reference, const fs::path& folder) {
@@ -175,34 +180,6 @@ void writeFromFile(const PlannedReference& reference, const fs::path& folder) {
            {"feature_shares", sharesJson(features, companionShares(reference.spec.image, features))}});
 }
 
-/// Mean luminance of every tile.
-std::vector<double> tileMeans(const Image& image) {
-    const int columns = (image.width + kTileSize - 1) / kTileSize, rows = (image.height + kTileSize - 1) / kTileSize;
-    std::vector<double> sums(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows)), counts(sums.size());
-    for (int y = 0; y < image.height; ++y) {
-        for (int x = 0; x < image.width; ++x) {
-            const auto tile = static_cast<std::size_t>(y / kTileSize * columns + x / kTileSize);
-            sums[tile] += luminance(Spectrum(image.at(x, y)));
-            counts[tile] += 1;
-        }
-    }
-    for (std::size_t i = 0; i < sums.size(); ++i) sums[i] /= counts[i];
-    return sums;
-}
-
-double halvesP(const std::vector<Image>& parts) {
-    std::vector<std::vector<double>> tiles;
-    for (const Image& part : parts) tiles.push_back(tileMeans(part));
-    const std::size_t half = parts.size() / 2;
-    std::vector<double> p;
-    for (std::size_t t = 0; t < tiles.front().size(); ++t) {
-        std::vector<double> first, second;
-        for (std::size_t i = 0; i < parts.size(); ++i) (i < half ? first : second).push_back(tiles[i][t]);
-        p.push_back(statistics::welchTest(first, second).p);
-    }
-    return std::ranges::min(statistics::holmAdjusted(p));
-}
-
 /// Each part's shares of its own energy; parts without any light say nothing.
 std::vector<statistics::MeanEstimate> partShares(const std::vector<Json>& results, const Features& features) {
     std::vector<std::vector<double>> shares(features.names.size());
@@ -220,6 +197,15 @@ std::vector<statistics::MeanEstimate> partShares(const std::vector<Json>& result
     return estimates;
 }
 
+/// Of the parts before and of new ones, by feature; where either knows nothing, what the other knows.
+std::vector<statistics::MeanEstimate> sharesTogether(const std::vector<statistics::MeanEstimate>& before,
+                                                     const std::vector<statistics::MeanEstimate>& added) {
+    if (before.empty() || added.empty()) return before.empty() ? added : before;
+    std::vector<statistics::MeanEstimate> all;
+    for (std::size_t i = 0; i < added.size(); ++i) all.push_back(statistics::combined(before[i], added[i]));
+    return all;
+}
+
 double total(const std::vector<Json>& results, const char* field) {
     double sum = 0;
     for (const Json& result : results) sum += result.at(field).get<double>();
@@ -228,25 +214,18 @@ double total(const std::vector<Json>& results, const char* field) {
 
 }  // namespace
 
-CombinedParts combineParts(const std::vector<Image>& parts) {
-    CombinedParts combined;
-    const Image& first = parts.front();
-    combined.image = Image(first.width, first.height);
-    combined.variance = Image(first.width, first.height);
-    const auto n = static_cast<double>(parts.size());
-    for (std::size_t i = 0; i < first.pixels.size(); ++i) {
-        Spectrum sum(0), squares(0);
-        for (const Image& part : parts) sum += Spectrum(part.pixels[i]);
-        const Spectrum mean = sum / n;
-        for (const Image& part : parts) {
-            const Spectrum d = Spectrum(part.pixels[i]) - mean;
-            squares += d * d;
-        }
-        combined.image.pixels[i] = Rgb(mean);
-        combined.variance.pixels[i] = Rgb(squares / ((n - 1) * n));
-    }
-    combined.smallestP = halvesP(parts);
-    return combined;
+fs::path referenceFolder(const PlannedReference& reference, const fs::path& runDir) {
+    return runDir / "references" / reference.key;
+}
+
+bool isReady(const PlannedReference& reference, const fs::path& runDir) {
+    const auto found = loadIntact(reference, referenceFolder(reference, runDir));
+    return found && found->parts >= wantedParts(reference);
+}
+
+int readyParts(const PlannedReference& reference, const fs::path& runDir) {
+    const auto found = loadIntact(reference, referenceFolder(reference, runDir));
+    return found ? found->parts : 0;
 }
 
 fs::path referenceCache() {
@@ -257,66 +236,82 @@ fs::path referenceCache() {
 }
 
 bool prepareReference(const PlannedReference& reference, const fs::path& runDir) {
-    const fs::path folder = folderOf(reference, runDir);
-    if (isIntact(reference, folder)) {
+    const fs::path folder = referenceFolder(reference, runDir);
+    if (isReady(reference, runDir)) {
         std::error_code ignored;  // a run that was killed at the very end left them
         fs::remove_all(partsFolder(reference, runDir), ignored);
         return true;
     }
-    discard(folder);
+    const int parts = readyParts(reference, runDir);
+    if (parts == 0) discard(folder);
     if (reference.spec.kind == ReferenceSpec::Kind::Truth) return writeTruth(reference, folder), true;
     if (reference.spec.kind == ReferenceSpec::Kind::File) return writeFromFile(reference, folder), true;
-    return takeFromCache(reference, folder);
+    takeFromCache(reference, folder, parts);
+    return isReady(reference, runDir);
 }
 
-bool isCached(const PlannedReference& reference) {
+int cachedParts(const PlannedReference& reference) {
     try {
-        return isIntact(reference, referenceCache() / reference.key);
+        const auto found = loadIntact(reference, referenceCache() / reference.key);
+        return found ? found->parts : 0;
     } catch (const UnreadableFile&) {
-        return false;
+        return 0;
     }
 }
 
 fs::path partsFolder(const PlannedReference& reference, const fs::path& runDir) {
-    return folderOf(reference, runDir) / "parts";
+    return referenceFolder(reference, runDir) / "parts";
 }
 
 void finishReference(const PlannedReference& reference, const fs::path& runDir) {
+    const fs::path folder = referenceFolder(reference, runDir);
+    const Features& features = reference.scene->scene.features;
+    CombinedParts before;
+    std::vector<statistics::MeanEstimate> sharesBefore;
+    std::vector<Json> results;  // what adds up: of the parts before, and of each that is new
+    if (auto made = loadIntact(reference, folder)) {
+        const JsonDocument document = JsonDocument::fromFile(folder / "result.json");
+        before = {made->parts, std::move(made->image), std::move(made->variance), halvesFromJson(document.root().at("halves"))};
+        sharesBefore = std::move(made->featureShares);
+        results.push_back(document.json());
+    }
     std::vector<Image> images;
-    std::vector<Json> results;
-    for (int part = 0; part < reference.task.replicates; ++part) {
+    std::vector<Json> own;
+    for (int part = before.parts; part < reference.task.replicates; ++part) {
         std::string damage = "it is missing";
         auto finished = finishedReplicate(reference.task, part, partsFolder(reference, runDir), &damage);
         if (!finished) fail(ExitCode::InputMissing, "part {} of {} is lost: {}", part + 1, reference.key, damage);
-        results.push_back(std::move(finished->result));
+        own.push_back(std::move(finished->result));
         images.push_back(std::move(finished->image));
     }
-    const CombinedParts combined = combineParts(images);
+    const CombinedParts combined = combineParts(images, before);
     if (std::ranges::all_of(combined.image.pixels, [](const Rgb& p) { return p == Rgb(0); }))
         fail(ExitCode::InvalidConfig,
              "no path carried light: the reference of scene {} is black. Is the camera inside a wall, or max_depth too "
              "small?",
              reference.scene->name);
-    const Features& features = reference.scene->scene.features;
-    const fs::path folder = folderOf(reference, runDir);
+    const auto shares = sharesTogether(sharesBefore, partShares(own, features));
+    results.insert(results.end(), own.begin(), own.end());
+    const double smallestP = combined.smallestP();
     write(reference, folder, combined.image, combined.variance,
           {{"kind", "sampler"},
            {"parameters", reference.spec.parameters},
            {"budget", budgetJson(reference.spec.budget)},
-           {"replicates", reference.spec.replicates},
-           {"halves_smallest_p", combined.smallestP},
-           {"halves_agree", combined.smallestP >= kHalvesLevel},
+           {"replicates", combined.parts},
+           {"halves_smallest_p", smallestP},
+           {"halves_agree", smallestP >= kHalvesLevel},
+           {"halves", halvesJson(combined)},
            {"wall_seconds", total(results, "wall_seconds")},
            {"rays", total(results, "rays")},
            {"samples", total(results, "samples")},
            {"mutations", total(results, "mutations")},
-           {"feature_shares", sharesJson(features, partShares(results, features))}});
-    fillCache(folder, reference.key);
+           {"feature_shares", sharesJson(features, shares)}});
+    fillCache(folder, reference.key, cachedParts(reference) < combined.parts);
     fs::remove_all(partsFolder(reference, runDir));
 }
 
 Reference readReference(const PlannedReference& reference, const fs::path& runDir) {
-    return load(reference, folderOf(reference, runDir));
+    return load(reference, referenceFolder(reference, runDir));
 }
 
 }  // namespace ulam

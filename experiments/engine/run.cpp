@@ -102,7 +102,10 @@ private:
             attempt(i, [&] {
                 if (!prepareReference(plan_.references[i], options_.runDir)) missing.push_back(i);
             });
-        for (const std::size_t i : missing) workload_.add(plan_.references[i].task, plan_.references[i].task.replicates);
+        for (const std::size_t i : missing) {
+            const PlannedReference& reference = plan_.references[i];
+            workload_.add(reference.task, reference.task.replicates - readyParts(reference, options_.runDir));
+        }
         for (const std::size_t i : missing) {
             attempt(i, [&] { makeParts(plan_.references[i]); });
             if (outcome_.interrupted) return;
@@ -111,7 +114,7 @@ private:
 
     void makeParts(const PlannedReference& reference) {
         const fs::path folder = partsFolder(reference, options_.runDir);
-        for (int part = 0; part < reference.task.replicates; ++part) {
+        for (int part = readyParts(reference, options_.runDir); part < reference.task.replicates; ++part) {
             const std::string what = fmt::format("reference of {}, part {} of {}", reference.scene->name, part + 1,
                                                  reference.task.replicates);
             if (!doReplicate(reference.task, part, folder, what)) return;

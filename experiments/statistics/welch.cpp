@@ -25,6 +25,13 @@ MeanEstimate estimateMean(std::span<const double> replicates) {
     return {mean(replicates), variance(replicates) / n, n - 1};
 }
 
+MeanEstimate combined(const MeanEstimate& a, const MeanEstimate& b) {
+    const double na = a.degrees + 1, nb = b.degrees + 1, n = na + nb, difference = b.mean - a.mean;
+    const auto squares = [](const MeanEstimate& e) { return e.varianceOfMean * (e.degrees + 1) * e.degrees; };
+    const double all = squares(a) + squares(b) + difference * difference * na * nb / n;
+    return {a.mean + difference * nb / n, all / (n * (n - 1)), n - 1};
+}
+
 double welchDegrees(double varianceA, double degreesA, double varianceB, double degreesB) {
     const double sum = varianceA + varianceB;
     return sum * sum / (varianceA * varianceA / degreesA + varianceB * varianceB / degreesB);

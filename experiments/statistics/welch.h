@@ -18,6 +18,10 @@ struct MeanEstimate {
 /// Of independent replicates: s^2 / n with n - 1 degrees of freedom. Needs at least two values.
 MeanEstimate estimateMean(std::span<const double> replicates);
 
+/// Of two groups of replicates as of one (Chan, Golub and LeVeque 1983, "Algorithms for Computing the Sample Variance"). The
+/// degrees of freedom of each are its number less one.
+MeanEstimate combined(const MeanEstimate& a, const MeanEstimate& b);
+
 /// Welch–Satterthwaite degrees of freedom of the sum of two independent variances of means.
 double welchDegrees(double varianceA, double degreesA, double varianceB, double degreesB);
 

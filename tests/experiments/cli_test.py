@@ -67,6 +67,33 @@ class CliTest(unittest.TestCase):
                          expect=expect)
 
 
+class References(CliTest):
+    def test_they_are_listed_checked_and_removed(self):
+        self.assertIn("0 references", self.ulam("reference", "list").stdout)
+        self.write("tiny.json", EXPERIMENT)
+        self.ulam("run", "tiny.json", "-o", "run", "--quiet")
+        entry, = json.loads(self.ulam("reference", "list", "--json").stdout)
+        made = self.folder / "run/references" / entry["key"]
+        self.assertEqual({**entry, "damage": ""}, entry)
+        self.assertEqual((entry["scene"], entry["width"], entry["replicates"]), ("wall", 16, 4))
+        self.assertEqual(entry["bytes"], sum(f.stat().st_size for f in made.iterdir()))
+        self.assertIn("1 references", self.ulam("reference", "list").stdout)
+
+        cached = self.folder / "cache/ulam/references" / entry["key"]
+        image = (cached / "image.exr").read_bytes()
+        (cached / "image.exr").write_bytes((cached / "variance.exr").read_bytes())
+        self.assertIn("damaged", self.ulam("reference", "list").stdout)
+        (cached / "image.exr").write_bytes(image)
+
+        self.assertIn(entry["key"], self.ulam("reference", "remove", entry["key"][:-1], expect=4).stderr)
+        self.ulam("reference", "remove", expect=2)
+        self.ulam("reference", "remove", "--older-than", 1)
+        self.assertTrue(cached.exists())
+        self.ulam("reference", "remove", entry["key"])
+        self.assertFalse(cached.exists())
+        self.assertTrue((made / "image.exr").exists())
+
+
 class Usage(CliTest):
     def test_the_page_of_the_vocabulary_is_the_programs(self):
         page = pathlib.Path("docs/vocabulary.md").read_text()

@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Parts of an image of 32 × 16: uniform noise around 1, and the second half of the parts brighter by `shift` in the
+/// Parts of an image of 32 × 16: uniform noise around 1, and the odd parts brighter by `shift` in the
 /// right tile.
 std::vector<Image> noisyParts(double shift) {
     std::vector<Image> parts;
@@ -21,7 +21,7 @@ std::vector<Image> noisyParts(double shift) {
     for (int p = 0; p < 16; ++p) {
         Image image(32, 16);
         for (int y = 0; y < 16; ++y)
-            for (int x = 0; x < 32; ++x) image.at(x, y) = Rgb(float(0.5 + random() + (p >= 8 && x >= 16 ? shift : 0)));
+            for (int x = 0; x < 32; ++x) image.at(x, y) = Rgb(float(0.5 + random() + (p % 2 == 1 && x >= 16 ? shift : 0)));
         parts.push_back(image);
     }
     return parts;
@@ -49,8 +49,8 @@ TEST_CASE("parts give a mean and its variance", "[reference]") {
 }
 
 TEST_CASE("halves that differ in one tile are found", "[reference]") {
-    CHECK(combineParts(noisyParts(0)).smallestP > kHalvesLevel);
-    CHECK(combineParts(noisyParts(0.1)).smallestP < kHalvesLevel);
+    CHECK(combineParts(noisyParts(0)).smallestP() > kHalvesLevel);
+    CHECK(combineParts(noisyParts(0.1)).smallestP() < kHalvesLevel);
 }
 
 TEST_CASE("a reference is made in parts and cached across runs", "[reference]") {
@@ -112,7 +112,7 @@ TEST_CASE("a damaged reference is made again, in the run and in the cache", "[re
         CHECK(readReference(planned, folder / "run").image == before.image);
         // In the cache it is removed, not copied.
         damage(cached);
-        CHECK_FALSE(isCached(planned));
+        CHECK(cachedParts(planned) == 0);
         CHECK_FALSE(prepareReference(planned, folder / "second"));
         CHECK_FALSE(fs::exists(folder / "second" / "references" / planned.key / "image.exr"));
         CHECK_FALSE(fs::exists(cached));
@@ -124,7 +124,7 @@ TEST_CASE("a damaged reference is made again, in the run and in the cache", "[re
     damages.front()(cached);
     runIn(folder, plan);
     CHECK(readReference(planned, folder / "run").image == before.image);
-    CHECK(isCached(planned));
+    CHECK(cachedParts(planned) == 8);
 }
 
 TEST_CASE("what changes a reference changes its key", "[reference]") {
@@ -140,8 +140,61 @@ TEST_CASE("what changes a reference changes its key", "[reference]") {
     CHECK(key("max_depth", 4) != plain);
     CHECK(key("film.height", 8) != plain);
     CHECK(key("reference.budget.spp", 512) != plain);
-    CHECK(key("reference.replicates", 4) != plain);
+    CHECK(key("reference.replicates", 4) != plain);  // parts of twice the budget
     CHECK(key("scenes.wall.lamp.emitter.radiance", 3) != plain);
+}
+
+TEST_CASE("parts that are combined later come to the same", "[reference]") {
+    const std::vector<Image> all = noisyParts(0.05), first(all.begin(), all.begin() + 6), rest(all.begin() + 6, all.end());
+    const CombinedParts once = combineParts(all), twice = combineParts(rest, combineParts(first));
+    CHECK(twice.parts == once.parts);
+    for (std::size_t i = 0; i < once.image.pixels.size(); ++i) {
+        CHECK(twice.image.pixels[i].x == Approx(once.image.pixels[i].x));
+        CHECK(twice.variance.pixels[i].x == Approx(once.variance.pixels[i].x).epsilon(1e-4));
+    }
+    CHECK(twice.smallestP() == Approx(once.smallestP()));
+    const JsonDocument stored = JsonDocument::fromText(halvesJson(twice).dump(), "halves");
+    CombinedParts read = twice;
+    read.halves = halvesFromJson(stored.root());
+    CHECK(read.smallestP() == twice.smallestP());
+}
+
+TEST_CASE("a reference is extended by the parts that are new", "[reference]") {
+    const Folder folder;
+    const Plan plan = planOf(folder, tinyExperiment());
+    runIn(folder, plan);
+    Json larger = tinyExperiment();
+    larger["reference"] = {{"sampler", "bdpt"}, {"budget", {{"spp", 512}}}, {"replicates", 16}};
+    const Plan more = planOf(folder, larger);
+    const PlannedReference &before = plan.references[0], &after = more.references[0];
+    REQUIRE(after.key == before.key);
+    CHECK(cachedParts(after) == 8);
+
+    CHECK_FALSE(prepareReference(after, folder / "other"));
+    CHECK(readyParts(after, folder / "other") == 8);
+    // Parts that are there are not made again, whatever has become of them: these numbers are theirs.
+    for (int part = 8; part < 16; ++part) {
+        static const std::atomic<bool> never = false;
+        REQUIRE(renderReplicate(after.task, part, partsFolder(after, folder / "other"), 1, never, {}));
+    }
+    finishReference(after, folder / "other");
+    const Reference extended = readReference(after, folder / "other");
+    CHECK(extended.parts == 16);
+    CHECK(cachedParts(after) == 16);
+
+    // As if it had been made at once.
+    fs::remove_all(referenceCache());
+    runIn(folder, more);
+    const Reference whole = readReference(after, folder / "run");
+    CHECK(whole.parts == 16);
+    for (std::size_t i = 0; i < whole.image.pixels.size(); ++i) {
+        CHECK(extended.image.pixels[i].x == Approx(whole.image.pixels[i].x));
+        CHECK(extended.variance.pixels[i].x == Approx(whole.variance.pixels[i].x).epsilon(1e-4));
+    }
+
+    // Whoever asks for fewer gets the better one.
+    CHECK(prepareReference(before, folder / "third"));
+    CHECK(readReference(before, folder / "third").parts == 16);
 }
 
 TEST_CASE("a file is a reference if its variance stands beside it", "[reference]") {

@@ -69,3 +69,17 @@ TEST_CASE("one wrong tile among 256 is found and right ones are not") {
     CHECK(found >= 0.99);
     CHECK_THROWS_AS(welchPValues(std::vector<MeanEstimate>(2), std::vector<MeanEstimate>(3)), ulam::Error);
 }
+
+TEST_CASE("two groups together are one group") {
+    const std::vector<double> x{1, 4, 2, 8, 5, 7};
+    const std::span<const double> all(x);
+    for (const std::size_t n : {std::size_t(2), std::size_t(4)}) {
+        const MeanEstimate whole = estimateMean(all);
+        const MeanEstimate both = combined(estimateMean(all.first(n)), estimateMean(all.subspan(n)));
+        CHECK(both.mean == Approx(whole.mean));
+        CHECK(both.varianceOfMean == Approx(whole.varianceOfMean));
+        CHECK(both.degrees == whole.degrees);
+    }
+    const MeanEstimate one{3, 0, 0};
+    CHECK(combined(one, {5, 0, 0}).varianceOfMean == Approx(1));
+}
