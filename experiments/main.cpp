@@ -66,6 +66,8 @@ ExitCode runProgram(int argc, char* argv[]) {
     app.set_version_flag("--version", ulam::programVersion());
     app.require_subcommand(1);
     ulam::addRunCommand(app);
+    ulam::addWorkCommand(app);
+    ulam::addStatusCommand(app);
     ulam::addRenderCommand(app);
     ulam::addCompareCommand(app);
     ulam::addSceneCommand(app);

@@ -6,6 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/config/difference.h"
 
 namespace ulam {
 namespace {
@@ -16,16 +17,6 @@ uint32_t checksum(std::string_view bytes) {
 
 std::string firstLine(unsigned long long bytes, unsigned long long crc) {
     return fmt::format("ulam checkpoint {} {} {}\n", kCheckpointFormat, bytes, crc);
-}
-
-/// "/sampler/chains is 500, 1000 in the checkpoint" of the first difference.
-std::string difference(const Json& stored, const Json& wanted) {
-    const Json step = Json::diff(stored, wanted).at(0);
-    const Json::json_pointer place(step["path"].get<std::string>());
-    const auto at = [&](const Json& document) {
-        return document.contains(place) ? document[place].dump() : std::string("not given");
-    };
-    return fmt::format("{} is {}, {} in the checkpoint", place.to_string(), at(wanted), at(stored));
 }
 
 }  // namespace
@@ -56,7 +47,7 @@ std::string readCheckpoint(const CheckpointPlan& plan) {
     const size_t identityEnd = rest.find('\n');
     const Json identity = Json::parse(rest.substr(0, identityEnd));
     if (identity != plan.identity)
-        fail(ExitCode::InvalidConfig, "{} belongs to another run: {}", name, difference(identity, plan.identity));
+        fail(ExitCode::InvalidConfig, "{} belongs to another run: {}", name, firstDifference(identity, plan.identity, "the checkpoint"));
     bytes.erase(0, lineEnd + 1 + identityEnd + 1);  // in place: a state may be most of the memory
     return bytes;
 }

@@ -14,6 +14,7 @@
 #include "core/config/suggest.h"
 #include "core/render/sampler.h"
 #include "core/scene/loading/scene_file.h"
+#include "experiments/engine/lease.h"
 
 namespace ulam {
 namespace {
@@ -108,6 +109,14 @@ std::shared_ptr<int> addThreadsOption(CLI::App& command) {
         ->check(CLI::Range(1, 1024))
         ->capture_default_str();
     return threads;
+}
+
+std::shared_ptr<double> addLeaseOption(CLI::App& command) {
+    auto seconds = std::make_shared<double>(kLeaseSeconds);
+    command.add_option("--lease", *seconds, "seconds after which others take over what this process has stopped to work at")
+        ->check(positiveNumber())
+        ->capture_default_str();
+    return seconds;
 }
 
 void addMemoryOption(CLI::App& command) {

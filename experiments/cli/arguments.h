@@ -35,6 +35,9 @@ void addPluginOption(CLI::App& command);
 /// `--threads N`, by default the number of cores.
 std::shared_ptr<int> addThreadsOption(CLI::App& command);
 
+/// `--lease SECONDS`: see Lease.
+std::shared_ptr<double> addLeaseOption(CLI::App& command);
+
 /// `--max-memory SIZE`: see limitMemory, which is called while the command line is parsed.
 void addMemoryOption(CLI::App& command);
 

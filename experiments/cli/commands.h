@@ -7,6 +7,8 @@
 namespace ulam {
 
 void addRunCommand(CLI::App& app);
+void addWorkCommand(CLI::App& app);
+void addStatusCommand(CLI::App& app);
 void addRenderCommand(CLI::App& app);
 void addCompareCommand(CLI::App& app);
 void addSceneCommand(CLI::App& app);

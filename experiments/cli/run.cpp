@@ -16,6 +16,7 @@
 #include "experiments/engine/reference.h"
 #include "experiments/engine/result.h"
 #include "experiments/engine/signals.h"
+#include "experiments/engine/slurm.h"
 #include "experiments/engine/summary.h"
 #include "experiments/engine/tuning.h"
 #include "experiments/report/report.h"
@@ -27,9 +28,11 @@ namespace {
 namespace fs = std::filesystem;
 
 struct RunArguments {
-    std::string experiment, folder;
+    std::string experiment, folder, jobs;
+    std::vector<std::string> workOptions;  ///< for those who work in jobs
     std::vector<std::string> assignments;
     std::shared_ptr<int> threads;
+    std::shared_ptr<double> lease;
     bool resume = false, dryRun = false, keepGoing = false, quiet = false, json = false;
 };
 
@@ -69,7 +72,8 @@ Json plannedJson(const Plan& plan, const PlanEstimate& estimate) {
         note(planned["cells"][i], estimate.cells[i], plan.cells[i].task.replicates);
     for (std::size_t i = 0; i < plan.references.size(); ++i)
         if (plan.references[i].spec.kind == ReferenceSpec::Kind::Sampler)
-            note(planned["references"][plan.references[i].key], estimate.references[i], 1);
+            note(planned["references"][plan.references[i].key], estimate.references[i],
+                 estimate.missingParts[i]);
     note(planned, estimate.total(plan), 1);
     planned["tried_cells"] = estimate.tried;
     planned["warnings"] = replicateWarnings(plan);
@@ -135,6 +139,31 @@ void printResults(const Json& summary, const fs::path& runDir, const RunArgument
 
 constexpr const char* kGoOn = "finished replicates are kept: go on with --resume";
 
+void printJobs(const std::vector<JobArray>& arrays, const fs::path& runDir, const RunArguments& a) {
+    if (a.json) {
+        Json jobs = Json::array();
+        for (const JobArray& array : arrays)
+            jobs.push_back({{"job", array.job}, {"kind", array.kind}, {"tasks", array.tasks}, {"replicates", array.replicates}, {"estimated_seconds", array.seconds}});
+        fmt::print("{}\n", dump(jobs));
+        return;
+    }
+    for (const JobArray& array : arrays)
+        fmt::print("job {}: {}, {} replicates in {} tasks of about {}\n", array.job, array.kind, array.replicates, array.tasks,
+                   durationText(array.seconds / double(array.tasks)));
+    if (arrays.empty()) fmt::print("nothing is left to submit\n");
+    fmt::print("ulam status {} shows what becomes of it; when all is done, this command with --resume in place of --jobs makes the report\n", runDir.string());
+}
+
+/// What those who work in jobs are told of the files and limits that this process was told of.
+std::vector<std::string> workOptions(const CLI::App& command) {
+    std::vector<std::string> options;
+    for (const char* name : {"--plugin", "--resource-path"})
+        for (const std::string& file : command.get_option(name)->results()) options.insert(options.end(), {name, fs::absolute(file).string()});
+    for (const char* name : {"--max-memory", "--lease"})
+        for (const std::string& value : command.get_option(name)->results()) options.insert(options.end(), {name, value});
+    return options;
+}
+
 void runExperiment(const RunArguments& a) {
     JsonDocument document = readExperiment(a.experiment);
     document.applyOverrides(a.assignments);
@@ -142,10 +171,12 @@ void runExperiment(const RunArguments& a) {
     Plan plan = makePlan(document, a.experiment);
     if (a.dryRun) return printDryRun(plan, tuning, a);
 
+    const auto slurm = a.jobs.empty() ? std::nullopt : std::optional(parseSlurmOptions(a.jobs));
     RunOptions options;
     options.runDir = a.folder.empty() ? defaultFolder(plan.name, a.resume) : fs::path(a.folder);
     options.threads = *a.threads;
     options.keepGoing = a.keepGoing;
+    options.leaseSeconds = *a.lease;
     makeFolder(options.runDir);
     const FileLock lock = FileLock::claim(options.runDir / "run.lock", options.runDir.string());
     if (!a.resume && fs::exists(options.runDir / "resolved.json"))
@@ -171,6 +202,10 @@ void runExperiment(const RunArguments& a) {
         if (outcome.interrupted) failIfSignalled(kGoOn);
         plan = makePlan(outcome.experiment, a.experiment);
         tuned = outcome.record;
+    }
+    if (slurm) {
+        writeHeader(plan, options);
+        return printJobs(submitMissing(plan, options, *slurm, a.workOptions), options.runDir, a);
     }
     const RunOutcome outcome = runPlan(plan, options, watchSignals(), progress);
     if (outcome.interrupted) failIfSignalled(kGoOn);
@@ -206,14 +241,21 @@ void addRunCommand(CLI::App& app) {
         ->take_all()
         ->allow_extra_args(false);
     a->threads = addThreadsOption(command);
+    a->lease = addLeaseOption(command);
     addMemoryOption(command);
+    command.add_option("--jobs", a->jobs,
+                       "submit what is missing to Slurm and stop: slurm:KEY=VALUE,... with task-minutes and options of sbatch, as partition=short")
+        ->type_name("slurm[:KEY=VALUE,...]");
     command.add_flag("--keep-going", a->keepGoing,
                      "a replicate or a reference that fails is reported, the others go on");
     command.add_flag("--quiet", a->quiet, "no progress");
     command.add_flag("--json", a->json, "print summary.json (with --dry-run: the plan)");
     addPluginOption(command);
     addResourceOption(command);
-    command.callback([a] { runExperiment(*a); });
+    command.callback([a, &command] {
+        a->workOptions = workOptions(command);
+        runExperiment(*a);
+    });
 }
 
 }  // namespace ulam

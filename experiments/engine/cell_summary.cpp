@@ -79,6 +79,7 @@ public:
         addFeatures();
         json["reference"] = reference.key;
         json["reference_image"] = "references/" + reference.key + "/image.exr";
+        addMachines();
         judgeReference();
         addWarnings();
         json["warnings"] = warnings_;
@@ -271,6 +272,14 @@ private:
         }
         summary_.json["features"] = std::move(all);
         summary_.json["feature_grid"] = {features.rows, features.columns};
+    }
+
+    void addMachines() {
+        std::map<std::string, int> replicates;
+        for (const Replicate& r : replicates_) ++replicates[r.result.value("processor", "not known")];
+        summary_.json["machines"] = Json::array();
+        for (const auto& [processor, count] : replicates)
+            summary_.json["machines"].push_back({{"processor", processor}, {"replicates", count}});
     }
 
     void judgeReference() {

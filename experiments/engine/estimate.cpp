@@ -139,11 +139,10 @@ PlanEstimate estimatePlan(const Plan& plan, int threads) {
         if (estimate.cells[c].bytes == 0) estimate.cells[c] = {sum.seconds / count, sum.bytes / count};
     }
     for (const PlannedReference& reference : plan.references) {
-        Cost& all = estimate.references.emplace_back();
-        if (reference.spec.kind != ReferenceSpec::Kind::Sampler) continue;
-        const int missing = std::max(0, reference.task.replicates - cachedParts(reference));
-        const Cost part = estimateReplicate(reference.task, threads);
-        all = {part.seconds * missing, 2 * part.bytes};  // image and variance: the parts are removed
+        const bool made = reference.spec.kind == ReferenceSpec::Kind::Sampler;
+        const int missing = made ? std::max(0, reference.task.replicates - cachedParts(reference)) : 0;
+        estimate.missingParts.push_back(missing);
+        estimate.references.push_back(missing > 0 ? estimateReplicate(reference.task, threads) : Cost{});
     }
     return estimate;
 }
@@ -154,9 +153,9 @@ Cost PlanEstimate::total(const Plan& plan) const {
         sum.seconds += cells[c].seconds * plan.cells[c].task.replicates;
         sum.bytes += cells[c].bytes * plan.cells[c].task.replicates;
     }
-    for (const Cost& reference : references) {
-        sum.seconds += reference.seconds;
-        sum.bytes += reference.bytes;
+    for (std::size_t i = 0; i < references.size(); ++i) {
+        sum.seconds += references[i].seconds * missingParts[i];
+        sum.bytes += 2 * references[i].bytes;  // image and variance: the parts are removed
     }
     return sum;
 }

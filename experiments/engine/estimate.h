@@ -22,7 +22,8 @@ inline constexpr std::size_t kTriedCells = 100;
 
 struct PlanEstimate {
     std::vector<Cost> cells;       ///< of one replicate of each
-    std::vector<Cost> references;  ///< of each, the parts that the cache does not hold; none where no sampler makes it
+    std::vector<Cost> references;    ///< of a part of each; none where nothing is missing or no sampler makes it
+    std::vector<int> missingParts;   ///< of each, those that the cache does not hold
     std::size_t tried = 0;             ///< cells that were
 
     /// Of everything together. Space is that of the run's folder when it is done, without tables and report.

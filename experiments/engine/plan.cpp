@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <numeric>
+#include <set>
 
 #include "core/base/error.h"
 #include "core/base/sha256.h"
@@ -33,7 +34,7 @@ public:
     Plan make() {
         const JsonNode root = document_.root();
         plan_.experiment = root.json();
-        plan_.source = file_.string();
+        plan_.source = fs::absolute(file_).lexically_normal().string();  // for those who plan again elsewhere
         const std::optional<JsonNode> sweep = root.isObject() ? root.find("sweep") : std::nullopt;
         const std::vector<SweepPoint> points = sweep ? expandSweep(*sweep, root) : std::vector<SweepPoint>(1);
         for (const SweepPoint& point : points) addPoint(point);
@@ -164,9 +165,7 @@ private:
     }
 
     void addComparison(PlannedComparison comparison) {
-        for (const PlannedComparison& c : plan_.comparisons)
-            if (c.cell == comparison.cell && c.baseline == comparison.baseline) return;
-        plan_.comparisons.push_back(comparison);
+        if (compared_.emplace(comparison.cell, comparison.baseline).second) plan_.comparisons.push_back(comparison);
     }
 
     const JsonDocument& document_;
@@ -174,6 +173,7 @@ private:
     Plan plan_;
     std::map<std::string, std::shared_ptr<const PlannedScene>> scenes_;
     std::map<std::string, std::size_t> cells_;
+    std::set<std::pair<std::size_t, std::size_t>> compared_;
 };
 
 Json taskJson(const Task& task) {
@@ -225,6 +225,12 @@ std::vector<Plan::Replicate> Plan::order(const std::vector<int>& done) const {
                       all[static_cast<std::size_t>(begin + random.index(static_cast<int>(n)))]);
     }
     return all;
+}
+
+std::vector<int> Plan::replicatesOfCells() const {
+    std::vector<int> counts;
+    for (const Cell& cell : cells) counts.push_back(cell.task.replicates);
+    return counts;
 }
 
 std::vector<double> Plan::smallestAdjustedP() const {

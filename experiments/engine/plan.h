@@ -78,6 +78,8 @@ struct Plan {
     /// Block after block of one replicate of every cell, each in an order of its own, so that drift of the machine
     /// hits all cells alike. `done` has the number of replicates of each cell that are left out, its first ones.
     std::vector<Replicate> order(const std::vector<int>& done = {}) const;
+    /// How many each cell has so far.
+    std::vector<int> replicatesOfCells() const;
     /// The smallest adjusted p of each comparison when it has as many replicates as it can get.
     std::vector<double> smallestAdjustedP() const;
     /// resolved.json: every default, every seed, scene hashes.

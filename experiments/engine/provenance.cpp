@@ -62,6 +62,11 @@ const Json& simd() {
     return used;
 }
 
+const std::string& processorName() {
+    static const std::string name = kernelValue("/proc/cpuinfo", "model name");
+    return name;
+}
+
 std::string utcNow() {
     const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
     std::tm parts{};
@@ -103,7 +108,7 @@ Json provenance(const std::vector<std::string>& arguments) {
           {"kernel", system.release},
           {"architecture", system.machine},
           {"distribution", kernelValue("/etc/os-release", "PRETTY_NAME")},
-          {"cpu", kernelValue("/proc/cpuinfo", "model name")},
+          {"cpu", processorName()},
           {"cpu_flags", kernelValue("/proc/cpuinfo", "flags")},
           {"cores", std::thread::hardware_concurrency()},
           {"memory", kernelValue("/proc/meminfo", "MemTotal")}}},

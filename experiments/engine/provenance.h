@@ -23,6 +23,9 @@ std::vector<std::string> processArguments();
 /// "ray_tracer": "avx512"}. With others images are rounded otherwise, and chains take other ways.
 const Json& simd();
 
+/// The processor's name as the kernel gives it; empty where it gives none.
+const std::string& processorName();
+
 /// "2025-01-31T12:00:00Z"
 std::string utcNow();
 

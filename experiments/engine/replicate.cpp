@@ -1,13 +1,19 @@
 #include "experiments/engine/replicate.h"
 
+#include <unistd.h>
+
 #include "core/base/file.h"
+#include "core/base/file_lock.h"
 #include "experiments/engine/chain_file.h"
+#include "experiments/engine/provenance.h"
 
 namespace ulam {
 
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr const char* kFailureFile = "failed.json";
 
 /// What the analysis reads is there and is a number. Fails with InvalidConfig where it is not.
 void checkNumbers(const JsonNode& result) {
@@ -115,10 +121,42 @@ bool renderReplicate(const Task& task, int replicate, const fs::path& taskFolder
     makeFolder(replicateFolder(taskFolder, replicate));
     const RenderResult result = renderTask(task, options);
     if (result.interrupted) return false;
-    writeReplicate(task, replicate, taskFolder, threads, result);
+    {
+        // A process that was held up may have lost its work to another: the files that stay are of one of them.
+        const FileLock lock = FileLock::await(replicateFolder(taskFolder, replicate));
+        if (!finishedReplicate(task, replicate, taskFolder))
+            writeReplicate(task, replicate, taskFolder, threads, result);
+    }
     std::error_code ignored;
     fs::remove(options.checkpoint->file, ignored);
     return true;
+}
+
+void recordFailure(const fs::path& folder, const std::string& message) {
+    makeFolder(folder);
+    writeFileAtomically(folder / kFailureFile, dump({{"schema_version", 1},
+                                                     {"message", message},
+                                                     {"host", hostName()},
+                                                     {"process", ::getpid()},
+                                                     {"time", utcNow()}}) +
+                                                   "\n");
+}
+
+std::optional<FailureRecord> recordedFailure(const fs::path& folder) {
+    std::error_code ignored;
+    if (!fs::exists(folder / kFailureFile, ignored)) return {};
+    try {
+        const JsonDocument document = JsonDocument::fromFile(folder / kFailureFile);
+        return FailureRecord{document.root().at("message").string(), document.root().at("host").string(),
+                             document.root().at("time").string()};
+    } catch (const Error& error) {
+        return FailureRecord{error.what(), "", ""};
+    }
+}
+
+void forgetFailure(const fs::path& folder) {
+    std::error_code ignored;  // what cannot be removed cannot be written either, which says so
+    fs::remove(folder / kFailureFile, ignored);
 }
 
 }  // namespace ulam

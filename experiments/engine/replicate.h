@@ -35,8 +35,18 @@ RenderResult renderTask(const Task& task, RenderOptions options);
 void writeReplicate(const Task& task, int replicate, const std::filesystem::path& taskFolder, int threads,
                     const RenderResult& result);
 
-/// Renders a replicate and writes its folder. Returns false where a signal stopped it: then nothing is written.
+/// Renders a replicate and writes its folder, unless another process has finished it in the meantime. Returns false where
+/// a signal stopped it: then nothing is written.
 bool renderReplicate(const Task& task, int replicate, const std::filesystem::path& taskFolder, int threads,
                      const std::atomic<bool>& interrupt, const std::function<void(double)>& progress);
+
+/// Why a replicate or a reference failed: FOLDER/failed.json, there until it succeeds or is tried again.
+struct FailureRecord {
+    std::string message, host;
+    std::string time;  ///< UTC
+};
+void recordFailure(const std::filesystem::path& folder, const std::string& message);
+std::optional<FailureRecord> recordedFailure(const std::filesystem::path& folder);
+void forgetFailure(const std::filesystem::path& folder);
 
 }  // namespace ulam

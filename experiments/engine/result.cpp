@@ -122,6 +122,8 @@ Json resultJson(const RunIdentity& run, const RenderResult& result, const Featur
         {"image_sha256", imageHash(result.image)},
         {"interrupted", result.interrupted},
         {"program_version", programVersion()},
+        {"host", hostName()},
+        {"processor", processorName()},
         {"simd", simd()},
     };
 }

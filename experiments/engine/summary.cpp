@@ -175,8 +175,28 @@ private:
                 warn("{} against {}: the errors are heavy-tailed, so that the interval may cover less than 95 %",
                      judged.cell->json["cell"].get<std::string>(), judged.baseline->json["cell"].get<std::string>());
         }
+        warnOfUnlikeMachines();
         summary["comparisons"] = std::move(comparisons);
         summary["verdicts"] = std::move(verdicts);
+    }
+
+    void warnOfUnlikeMachines() {
+        std::set<std::string> unlike;
+        int mixed = 0;
+        for (const PlannedComparison& c : plan_.comparisons) {
+            if (cells_[c.cell].errors.errors.empty() || cells_[c.baseline].errors.errors.empty()) continue;
+            std::set<std::string> own;
+            for (const std::size_t cell : {c.cell, c.baseline})
+                for (const Json& machine : cells_[cell].json["machines"])
+                    own.insert(machine["processor"].get<std::string>());
+            if (own.size() < 2) continue;
+            ++mixed;
+            unlike.merge(own);
+        }
+        if (mixed > 0)
+            warn("results of unlike machines stand in {} of {} planned comparisons, so that speed-ups, and errors under time budgets, are "
+                 "of the machines too: {}",
+                 mixed, plan_.comparisons.size(), fmt::join(unlike, "; "));
     }
 
     const Plan& plan_;

@@ -27,7 +27,7 @@ def finished(folder):
     for result in folder.glob("run/**/result.json"):
         for file in result.parent.rglob("*"):
             name = str(file.relative_to(folder))
-            if file.is_file() and ".ulam-" not in name and not name.endswith("checkpoint"):
+            if file.is_file() and not any(part in name for part in (".ulam-", "/lease-", "/checkpoint")):
                 found[name] = (file.read_bytes(), file.stat().st_mtime_ns)
     return found
 

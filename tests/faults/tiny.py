@@ -90,7 +90,7 @@ def without_times(value):
 
 
 def is_temporary(name):
-    return ".ulam-" in name or "/parts/" in name or name.endswith("checkpoint")
+    return ".ulam-" in name or "/parts/" in name or "/lease-" in name or name.endswith("checkpoint")
 
 
 class Undisturbed:

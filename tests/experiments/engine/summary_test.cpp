@@ -95,6 +95,25 @@ TEST_CASE("a reference worse than the images decides nothing and says so", "[sum
     CHECK(contains(summary["warnings"].dump(), "too poor"));
 }
 
+TEST_CASE("results of unlike machines in one comparison are told of", "[summary]") {
+    const Folder folder;
+    const Plan plan = planOf(folder, tinyExperiment());
+    runIn(folder, plan);
+    const auto warnings = [&] { return summarize(plan, folder / "run", {})["warnings"].dump(); };
+    CHECK_FALSE(contains(warnings(), "unlike machines"));
+    const fs::path file = folder / "run/cells/wall-bdpt/r001/result.json";
+    Json result = JsonDocument::fromFile(file).json();
+    CHECK(result["host"] == hostName());
+    const std::string here = result["processor"];
+    result["processor"] = "another processor";
+    writeFileAtomically(file, dump(result));
+    CHECK(contains(warnings(), "results of unlike machines stand in 1 of 1 planned comparisons"));
+    CHECK(contains(warnings(), "another processor"));
+    const Json cell = summarize(plan, folder / "run", {})["cells"][1];
+    REQUIRE(cell["machines"].size() == 2);
+    for (const Json& machine : cell["machines"]) CHECK(machine["replicates"] == (machine["processor"] == here ? 2 : 1));
+}
+
 TEST_CASE("features come with their truth", "[summary]") {
     const Folder folder;
     Json experiment = tinyExperiment();
