@@ -37,7 +37,8 @@ void work(const WorkArguments& a) {
     const RunOutcome outcome =
         doWork(plan, options, watchSignals(), progress, [&](const auto&) { return addedReplicates(plan, a.folder); });
     if (outcome.interrupted) failIfSignalled("finished replicates are kept, and others may go on with the rest");
-    fmt::print("{} replicates are new, {} were there already\n", outcome.rendered, outcome.reused);
+    fmt::print("{} replicates and {} parts of references are new, {} replicates were there already\n", outcome.rendered,
+               outcome.parts, outcome.reused);
     if (!outcome.failures.empty())
         fail(ExitCode::SomeCellsFailed,
              "{} pieces of work failed: see ulam status {}; ulam run --resume tries them again",

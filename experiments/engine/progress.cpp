@@ -15,10 +15,14 @@ constexpr double kTerminalInterval = 0.2, kLogInterval = 15;  // seconds
 
 Progress::Progress(bool quiet) : quiet_(quiet), terminal_(::isatty(STDERR_FILENO)) {}
 
+bool Progress::isDue() const {
+    const double elapsed = std::chrono::duration<double>(Clock::now() - last_).count();
+    return !quiet_ && elapsed >= (terminal_ ? kTerminalInterval : kLogInterval);
+}
+
 void Progress::update(double fraction, const std::string& what) {
-    if (quiet_) return;
+    if (!isDue()) return;
     const auto now = Clock::now();
-    if (std::chrono::duration<double>(now - last_).count() < (terminal_ ? kTerminalInterval : kLogInterval)) return;
     last_ = now;
     const double elapsed = std::chrono::duration<double>(now - start_).count();
     std::string line = fmt::format("{:5.1f} %  {}", 100 * fraction, what);

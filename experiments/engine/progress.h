@@ -11,6 +11,8 @@ public:
     explicit Progress(bool quiet);
     ~Progress() { clear(); }
 
+    /// Whether an update would show now: of much work the fraction takes long to find.
+    bool isDue() const;
     /// `fraction` of all work done; `what` is being done now.
     void update(double fraction, const std::string& what);
     /// A line of its own, above the progress line. Not silenced by quiet.

@@ -36,6 +36,7 @@ struct Failure {
 struct RunOutcome {
     bool interrupted = false;
     int rendered = 0, reused = 0;  ///< replicates of cells
+    int parts = 0;                 ///< of references, rendered
     std::vector<Failure> failures;
 };
 

@@ -188,7 +188,10 @@ private:
             if (isReady(reference, options_.runDir)) return true;
             const std::string what = fmt::format("reference of {}, part {} of {}", reference.scene->name, part + 1,
                                                  reference.task.replicates);
-            return doReplicate(reference.task, part, folder, what) == Step::Done;
+            const int before = reused_;
+            if (doReplicate(reference.task, part, folder, what) != Step::Done) return false;
+            outcome_.parts += reused_ == before;
+            return true;
         });
         return waiting.parts.empty();
     }
@@ -241,7 +244,9 @@ private:
             removeAllButLeases(place);
         }
         const auto start = std::chrono::steady_clock::now();
-        const auto report = [&](double fraction) { progress_.update(workload_.fraction(task, fraction), what); };
+        const auto report = [&](double fraction) {
+            if (progress_.isDue()) progress_.update(workload_.fraction(task, fraction), what);
+        };
         if (!renderReplicate(task, replicate, folder, options_.threads, interrupt_, report)) return stopped();
         workload_.finish(task, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
         forgetFailure(place);
