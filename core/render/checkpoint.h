@@ -13,7 +13,7 @@
 namespace ulam {
 
 /// Rises whenever what a state consists of, or its order, changes.
-inline constexpr int kCheckpointFormat = 1;
+inline constexpr int kCheckpointFormat = 2;
 
 /// Whether a render goes on from a checkpoint that is there.
 enum class Resume {

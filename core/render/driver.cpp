@@ -22,6 +22,8 @@ double cpuSeconds() {
 constexpr uint64_t kUnlimited = std::numeric_limits<uint64_t>::max();
 // Rays are counted between rounds of this many chunks, whatever the number of threads: so the stop is deterministic.
 constexpr uint64_t kChunksPerRayRound = 32;
+// Of the time, what checkpoints and what previews may add.
+constexpr double kLargestShare = 0.01;
 
 class Driver {
 public:
@@ -42,18 +44,20 @@ public:
     RenderResult execute() {
         const auto& plan = options_.checkpoint;
         if (plan && plan->resume != Resume::No && std::filesystem::exists(plan->file)) restore(*plan);
-        plannedCheckpoint_ = workSeconds() + interval();
+        plannedCheckpoint_ = workSeconds() + checkpointInterval();
         prepare();
+        if (options_.preview) plannedPreview_ = workSeconds() + options_.preview->interval;
         while (!stopped_) {
             const int n = options_.snapshots - int(result_.snapshots.size());
             const double fraction = std::ldexp(1.0, -n);
             advance(fraction);
             if (n == 0 || stopped_) break;
             const double time = workSeconds();
-            RenderStatistics s;
-            run_->report(units_, s);
-            result_.snapshots.push_back({fraction, time, s.rays, s.samples, s.mutations, run_->develop(units_)});
-            notWork_ += workSeconds() - time;
+            aside([&] {
+                RenderStatistics s;
+                run_->report(units_, s);
+                result_.snapshots.push_back({fraction, time, s.rays, s.samples, s.mutations, run_->develop(units_)});
+            });
         }
         result_.wallSeconds = workSeconds();
         result_.cpuSeconds = cpuSeconds() - cpuStart_;
@@ -61,6 +65,7 @@ public:
         result_.units = units_;
         if (stopped_ && options_.checkpoint) result_.lost = keepState();
         result_.image = run_->develop(units_);
+        if (options_.preview) options_.preview->show(result_.image);
         run_->report(units_, result_.statistics);
         result_.statistics.biasLedger = substitutions_;
         result_.statistics.biasLedger.insert(result_.statistics.biasLedger.end(), run_->biasLedger().begin(), run_->biasLedger().end());
@@ -70,8 +75,20 @@ public:
     }
 
 private:
-    /// Of the render itself: without snapshots and checkpoints, with earlier sessions.
+    /// Of the render itself: without snapshots, checkpoints and previews, with earlier sessions.
     double workSeconds() const { return std::chrono::duration<double>(Clock::now() - start_).count() - notWork_; }
+
+    /// Does what is not the render's own work; returns the seconds it took.
+    template <class Action>
+    double aside(const Action& action) {
+        const double time = workSeconds(), cpu = cpuSeconds();
+        action();
+        const double spent = workSeconds() - time;
+        notWork_ += spent;
+        cpuStart_ += cpuSeconds() - cpu;
+        return spent;
+    }
+
     double timeLimit() const { return options_.budget.seconds.value_or(std::numeric_limits<double>::infinity()); }
 
     /// Adds to each of the run's phases what is the driver's.
@@ -81,6 +98,8 @@ private:
         const double image = pixels_ * sizeof(Rgb), snapshots = options_.snapshots * image;
         for (MemoryPhase& phase : phases) {
             phase.parts.push_back({options_.snapshots > 0 ? fmt::format("the image and {} snapshots", options_.snapshots) : "the image", image + snapshots, "a smaller film or fewer snapshots"});
+            // One is made, one waits and one is on its way.
+            if (options_.preview) phase.parts.push_back({"the images of a viewer", 3 * image, "a smaller film or no viewer"});
             phase.state += snapshots + kCounters;
             if (options_.checkpoint) phase.parts.push_back({"a checkpoint while it is written", phase.state, "--checkpoint 0"});
             stateBytes_ = std::max(stateBytes_, size_t(phase.state));
@@ -97,7 +116,7 @@ private:
                 run_->settle();
                 break;
             }
-            checkpoint();
+            pause();
         }
         prepared_ = true;
         seedingSeconds_ = workSeconds();
@@ -118,7 +137,7 @@ private:
             doUnits(std::min(limit, (units_ / round + 1) * round), deadline);
     }
 
-    /// Hands out chunks in order until the limit or the deadline, with pauses for checkpoints; what is done afterwards is
+    /// Hands out chunks in order until the limit or the deadline, with pauses; what is done afterwards is
     /// exactly [0, units_).
     void doUnits(uint64_t limit, double deadline) {
         for (;;) {
@@ -129,46 +148,55 @@ private:
                                       done.fetch_add(end - begin, std::memory_order_relaxed);
                                   });
             if (units_ >= limit || stopped_ || workSeconds() >= deadline) return;
-            checkpoint();
+            pause();
         }
     }
 
-    /// Stops at a signal, at the deadline and when a checkpoint is due; reports progress on the way. `done` must outlive it.
+    /// Stops at a signal, at the deadline and when something is due in a pause; reports progress on the way. `done` must outlive it.
     StopFunction stopAt(double deadline, const std::atomic<uint64_t>& done) {
         return [this, deadline, &done](int worker) {
             if (options_.interrupt && options_.interrupt->load(std::memory_order_relaxed)) stopped_ = true;
             const double now = workSeconds();
             report(worker, now, done.load(std::memory_order_relaxed));
-            return stopped_ || now >= deadline || now >= plannedCheckpoint_;
+            return stopped_ || now >= deadline || now >= std::min(plannedCheckpoint_, plannedPreview_);
         };
     }
 
-    double interval() const { return options_.checkpoint ? options_.checkpoint->interval : std::numeric_limits<double>::infinity(); }
+    /// Between rounds of work: what is due.
+    void pause() {
+        if (workSeconds() >= plannedCheckpoint_) checkpoint();
+        if (workSeconds() >= plannedPreview_) preview();
+    }
 
-    /// Between rounds of work.
+    double checkpointInterval() const { return options_.checkpoint ? options_.checkpoint->interval : std::numeric_limits<double>::infinity(); }
+
     void checkpoint() {
-        constexpr double kLargestShare = 0.01;
         const double before = result_.checkpointSeconds;
         if (const std::string trouble = keepState(); !trouble.empty()) options_.checkpoint->warn(trouble);
-        plannedCheckpoint_ = workSeconds() + std::max(interval(), (result_.checkpointSeconds - before) / kLargestShare);
+        plannedCheckpoint_ = workSeconds() + std::max(checkpointInterval(), (result_.checkpointSeconds - before) / kLargestShare);
+    }
+
+    void preview() {
+        double spent = 0;
+        if (units_ > 0) spent = aside([&] { options_.preview->show(run_->develop(units_)); });
+        result_.previewSeconds += spent;
+        plannedPreview_ = workSeconds() + std::max(options_.preview->interval, spent / kLargestShare);
     }
 
     /// What went wrong, or nothing.
     std::string keepState() {
-        const double time = workSeconds();
         std::string trouble;
-        try {
-            ByteWriter state;
-            state.text.reserve(stateBytes_);  // at once: growing, it would be there twice for a while
-            archive(state);
-            run_->save(state);
-            writeCheckpoint(*options_.checkpoint, state.text);
-        } catch (const Error& error) {
-            trouble = error.what();
-        }
-        const double spent = workSeconds() - time;
-        result_.checkpointSeconds += spent;
-        notWork_ += spent;
+        result_.checkpointSeconds += aside([&] {
+            try {
+                ByteWriter state;
+                state.text.reserve(stateBytes_);  // at once: growing, it would be there twice for a while
+                archive(state);
+                run_->save(state);
+                writeCheckpoint(*options_.checkpoint, state.text);
+            } catch (const Error& error) {
+                trouble = error.what();
+            }
+        });
         return trouble;
     }
 
@@ -189,7 +217,8 @@ private:
     template <class Archive>
     void archive(Archive& a) {
         double wall = workSeconds(), cpu = cpuSeconds() - cpuStart_;
-        a(prepared_, units_, wall, cpu, seedingSeconds_, seedingRays_, result_.snapshots, result_.sessions, result_.checkpointSeconds);
+        a(prepared_, units_, wall, cpu, seedingSeconds_, seedingRays_, result_.snapshots, result_.sessions, result_.checkpointSeconds,
+          result_.previewSeconds);
         notWork_ += workSeconds() - wall;
         cpuStart_ = cpuSeconds() - cpu;
     }
@@ -217,7 +246,7 @@ private:
     double seedingSeconds_ = 0;
     uint64_t seedingRays_ = 0;
     size_t stateBytes_ = 0;  ///< of a checkpoint, at most, as far as the sampler says
-    double plannedCheckpoint_ = 0, lastReport_ = 0;
+    double plannedCheckpoint_ = 0, plannedPreview_ = std::numeric_limits<double>::infinity(), lastReport_ = 0;
     std::atomic<bool> stopped_ = false;
     const std::atomic<uint64_t> seeded_ = 0;  ///< units done while seeding: none
 };

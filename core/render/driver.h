@@ -18,6 +18,13 @@ struct Budget {
     std::optional<double> rays;
 };
 
+/// Shows the image while it is made.
+struct PreviewPlan {
+    /// Called between rounds of work, which wait for it, and with the final image. It keeps at most two images.
+    std::function<void(Image)> show;
+    double interval = 1;  ///< seconds at least; longer where developing and showing take more than 1 % of the time
+};
+
 struct RenderOptions {
     Budget budget;
     RandomKey key;
@@ -30,6 +37,7 @@ struct RenderOptions {
     /// Keeps the state in a file while it runs and where it is interrupted; the caller removes the file of a run that is
     /// finished. None: the state is lost with the process.
     std::optional<CheckpointPlan> checkpoint;
+    std::optional<PreviewPlan> preview;
 };
 
 struct RenderResult {
@@ -37,10 +45,11 @@ struct RenderResult {
     RenderStatistics statistics;
     std::vector<Snapshot> snapshots;
     uint64_t units = 0;       ///< samples or mutations done: the work budget that repeats this image
-    double wallSeconds = 0, cpuSeconds = 0;  ///< of all sessions, without checkpoints
+    double wallSeconds = 0, cpuSeconds = 0;  ///< of all sessions, without snapshots, checkpoints and previews
     bool interrupted = false;
     int sessions = 1;              ///< 1 + how often it was resumed
     double checkpointSeconds = 0;  ///< spent on keeping the state, in all sessions
+    double previewSeconds = 0;     ///< spent on previews, in all sessions
     std::string lost;              ///< why the state could not be kept when it was interrupted; empty: it was
 };
 

@@ -126,6 +126,12 @@ void addMemoryOption(CLI::App& command) {
         ->type_name("SIZE");
 }
 
+std::shared_ptr<std::string> addViewerOption(CLI::App& command) {
+    auto address = std::make_shared<std::string>();
+    command.add_option("--tev", *address, "show images while they are made in the viewer tev, which listens there")->type_name("HOST:PORT");
+    return address;
+}
+
 std::shared_ptr<std::uint64_t> addSeedOption(CLI::App& command) {
     auto seed = std::make_shared<std::uint64_t>(1);
     // CLI11's own conversion wraps what is out of range.

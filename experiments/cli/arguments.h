@@ -41,6 +41,9 @@ std::shared_ptr<double> addLeaseOption(CLI::App& command);
 /// `--max-memory SIZE`: see limitMemory, which is called while the command line is parsed.
 void addMemoryOption(CLI::App& command);
 
+/// `--tev HOST:PORT`: empty where it is not given.
+std::shared_ptr<std::string> addViewerOption(CLI::App& command);
+
 /// `--seed N`, by default 1.
 std::shared_ptr<std::uint64_t> addSeedOption(CLI::App& command);
 

@@ -12,6 +12,7 @@
 #include "experiments/engine/progress.h"
 #include "experiments/engine/provenance.h"
 #include "experiments/engine/signals.h"
+#include "experiments/engine/tev.h"
 
 namespace ulam {
 namespace {
@@ -24,6 +25,7 @@ struct RenderArguments {
     std::optional<double> seconds, spp, mutations, rays;
     std::shared_ptr<std::uint64_t> seed;
     std::shared_ptr<int> threads;
+    std::shared_ptr<std::string> viewer;
     std::shared_ptr<SceneFileOptions> xml;
     double checkpointInterval = 30;
     bool resume = false, quiet = false;
@@ -74,6 +76,8 @@ void checkRepetition(const RenderArguments& a, const Repetition& of, const Image
 void renderImage(const RenderArguments& a) {
     checkArguments(a);
     Progress progress(a.quiet);
+    std::optional<TevViewer> viewer;
+    if (!a.viewer->empty()) viewer.emplace(*a.viewer, progress);
     // Two renders would keep their states in one file. The lock's name is no longer than that of the file.
     std::optional<FileLock> alone;
     if (a.checkpointInterval > 0) alone.emplace(FileLock::claim(a.output + ".lock", a.output, LockFile::Goes));
@@ -102,6 +106,7 @@ void renderImage(const RenderArguments& a) {
     options.threads = run.threads;
     options.progress = [&](double fraction) { progress.update(fraction, run.sampler); };
     options.interrupt = &watchSignals();
+    if (viewer) options.preview = PreviewPlan{[&](Image image) { viewer->show(a.output, std::move(image)); }};
     if (a.checkpointInterval > 0) {
         options.checkpoint = checkpointPlan(a, job);
         options.checkpoint->warn = [&](const std::string& trouble) { progress.message("warning: no checkpoint: " + trouble); };
@@ -155,6 +160,7 @@ void addRenderCommand(CLI::App& app) {
     a->seed = addSeedOption(command);
     a->threads = addThreadsOption(command);
     addMemoryOption(command);
+    a->viewer = addViewerOption(command);
     command.add_option("-o,--output", a->output, "image to write")->type_name("OUT.exr")->required();
     command.add_option("--stats", a->stats, "numbers to write, as in a cell's result.json")->type_name("OUT.json");
     command.add_option("--replay", a->replay, "repeat the run of a result.json by the work it did, and check that the image is the same")

@@ -18,6 +18,7 @@
 #include "experiments/engine/signals.h"
 #include "experiments/engine/slurm.h"
 #include "experiments/engine/summary.h"
+#include "experiments/engine/tev.h"
 #include "experiments/engine/tuning.h"
 #include "experiments/report/report.h"
 #include "experiments/statistics/comparison.h"
@@ -33,6 +34,7 @@ struct RunArguments {
     std::vector<std::string> assignments;
     std::shared_ptr<int> threads;
     std::shared_ptr<double> lease;
+    std::shared_ptr<std::string> viewer;
     bool resume = false, dryRun = false, keepGoing = false, quiet = false, json = false;
 };
 
@@ -172,11 +174,15 @@ void runExperiment(const RunArguments& a) {
     if (a.dryRun) return printDryRun(plan, tuning, a);
 
     const auto slurm = a.jobs.empty() ? std::nullopt : std::optional(parseSlurmOptions(a.jobs));
+    Progress progress(a.quiet);
+    std::optional<TevViewer> viewer;
+    if (!a.viewer->empty()) viewer.emplace(*a.viewer, progress);
     RunOptions options;
     options.runDir = a.folder.empty() ? defaultFolder(plan.name, a.resume) : fs::path(a.folder);
     options.threads = *a.threads;
     options.keepGoing = a.keepGoing;
     options.leaseSeconds = *a.lease;
+    if (viewer) options.show = [&](const std::string& name, Image image) { viewer->show(name, std::move(image)); };
     makeFolder(options.runDir);
     const FileLock lock = FileLock::claim(options.runDir / "run.lock", options.runDir.string());
     if (!a.resume && fs::exists(options.runDir / "resolved.json"))
@@ -185,7 +191,6 @@ void runExperiment(const RunArguments& a) {
 
     if (a.resume) removeTemporaries(options.runDir);
     removeTemporaries(referenceCache(), Below::No);
-    Progress progress(a.quiet);
     std::vector<std::string> warnings = replicateWarnings(plan);
     if (!lock.held())
         warnings.push_back(fmt::format("no lock on {}, where the file system has none: let one process write there",
@@ -246,6 +251,7 @@ void addRunCommand(CLI::App& app) {
     command.add_option("--jobs", a->jobs,
                        "submit what is missing to Slurm and stop: slurm:KEY=VALUE,... with task-minutes and options of sbatch, as partition=short")
         ->type_name("slurm[:KEY=VALUE,...]");
+    a->viewer = addViewerOption(command);
     command.add_flag("--keep-going", a->keepGoing,
                      "a replicate or a reference that fails is reported, the others go on");
     command.add_flag("--quiet", a->quiet, "no progress");

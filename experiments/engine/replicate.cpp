@@ -109,12 +109,14 @@ RenderResult renderTask(const Task& task, RenderOptions options) {
 }
 
 bool renderReplicate(const Task& task, int replicate, const fs::path& taskFolder, int threads,
-                     const std::atomic<bool>& interrupt, const std::function<void(double)>& progress) {
+                     const std::atomic<bool>& interrupt, const std::function<void(double)>& progress,
+                     const std::optional<PreviewPlan>& preview) {
     RenderOptions options;
     options.key = task.key(replicate);
     options.threads = threads;
     options.progress = progress;
     options.interrupt = &interrupt;
+    options.preview = preview;
     options.checkpoint = CheckpointPlan{.file = checkpointFile(taskFolder, replicate),
                                         .identity = {{"task", task.hash()}, {"replicate", replicate}},
                                         .resume = Resume::IfUsable};

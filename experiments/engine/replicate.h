@@ -38,7 +38,8 @@ void writeReplicate(const Task& task, int replicate, const std::filesystem::path
 /// Renders a replicate and writes its folder, unless another process has finished it in the meantime. Returns false where
 /// a signal stopped it: then nothing is written.
 bool renderReplicate(const Task& task, int replicate, const std::filesystem::path& taskFolder, int threads,
-                     const std::atomic<bool>& interrupt, const std::function<void(double)>& progress);
+                     const std::atomic<bool>& interrupt, const std::function<void(double)>& progress,
+                     const std::optional<PreviewPlan>& preview = {});
 
 /// Why a replicate or a reference failed: FOLDER/failed.json, there until it succeeds or is tried again.
 struct FailureRecord {

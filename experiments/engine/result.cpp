@@ -94,6 +94,7 @@ Json resultJson(const RunIdentity& run, const RenderResult& result, const Featur
         {"threads", run.threads},
         {"sessions", result.sessions},
         {"checkpoint_seconds", result.checkpointSeconds},
+        {"preview_seconds", result.previewSeconds},
         {"wall_seconds", result.wallSeconds},
         {"cpu_seconds", result.cpuSeconds},
         {"setup_seconds", run.setupSeconds},

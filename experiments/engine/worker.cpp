@@ -247,7 +247,9 @@ private:
         const auto report = [&](double fraction) {
             if (progress_.isDue()) progress_.update(workload_.fraction(task, fraction), what);
         };
-        if (!renderReplicate(task, replicate, folder, options_.threads, interrupt_, report)) return stopped();
+        std::optional<PreviewPlan> preview;
+        if (options_.show) preview = PreviewPlan{[&](Image image) { options_.show(what, std::move(image)); }};
+        if (!renderReplicate(task, replicate, folder, options_.threads, interrupt_, report, preview)) return stopped();
         workload_.finish(task, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
         forgetFailure(place);
         report(0);

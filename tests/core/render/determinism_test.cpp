@@ -37,13 +37,15 @@ std::vector<Job> jobs() {
     return all;
 }
 
-RenderResult run(const Scene& scene, const Job& job, int threads, int snapshots = 0) {
+RenderResult run(const Scene& scene, const Job& job, int threads, int snapshots = 0,
+                 const std::optional<PreviewPlan>& preview = {}) {
     const auto sampler = Registry<Sampler>::instance().create(JsonNode(job.sampler));
     RenderOptions options;
     options.budget = job.budget;
     options.key = makeKey(5);
     options.threads = threads;
     options.snapshots = snapshots;
+    options.preview = preview;
     return render(scene, *sampler, options);
 }
 
@@ -97,6 +99,24 @@ TEST_CASE("snapshots do not change the result, and are results themselves") {
             part.budget.spp = units / double(plain.image.pixels.size());
             CHECK(sameBytes(run(scene, part, 3).image, snapshot.image));
         }
+    }
+}
+
+TEST_CASE("previews do not change the result; there are several, and the last is the image") {
+    const Scene scene = buildScene(pathScene("diffuse").dictionary);
+    for (const Job& job : jobs()) {
+        INFO(job.sampler.dump());
+        std::vector<Image> shown;
+        const PreviewPlan preview{.show = [&](Image image) { shown.push_back(std::move(image)); }, .interval = 1e-4};
+        const RenderResult plain = run(scene, job, 1), watched = run(scene, job, 2, 1, preview);
+        CHECK(watched.units == plain.units);
+        CHECK(watched.statistics.rays == plain.statistics.rays);
+        CHECK(sameBytes(watched.image, plain.image));
+        REQUIRE(shown.size() > 2);
+        CHECK(sameBytes(shown.back(), plain.image));
+        CHECK_FALSE(sameBytes(shown.front(), plain.image));
+        CHECK(watched.previewSeconds > 0);
+        CHECK(plain.previewSeconds == 0);
     }
 }
 
