@@ -75,6 +75,7 @@ ExitCode runProgram(int argc, char* argv[]) {
     ulam::addSchemaCommand(app);
     ulam::addReportCommand(app);
     ulam::addReferenceCommand(app);
+    ulam::addWatchCommand(app);
     ulam::addNewCommand(app);
     ulam::addBenchCommand(app);
     ulam::addVerifyCommand(app);

@@ -25,7 +25,7 @@ MAY_INCLUDE = {
     "experiments": CORE,
 }
 # Libraries that one place alone knows.
-ONLY_IN = {"OpenImageIO/": "core/image/", "embree": "core/scene/", "pugixml": "core/scene/"}
+ONLY_IN = {"OpenImageIO/": "core/image/", "embree": "core/scene/", "pugixml": "core/scene/", "httplib": "experiments/cli/"}
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.M)
 REGISTRATION = re.compile(r'^ULAM_REGISTER(?:_[A-Z]+)?\(\s*(?:::ulam::)?\w+\s*,(?:[^"]*,)?\s*"([^"]+)"', re.M)

@@ -16,6 +16,7 @@ void addListCommand(CLI::App& app);
 void addSchemaCommand(CLI::App& app);
 void addReportCommand(CLI::App& app);
 void addReferenceCommand(CLI::App& app);
+void addWatchCommand(CLI::App& app);
 void addNewCommand(CLI::App& app);
 void addBenchCommand(CLI::App& app);
 void addVerifyCommand(CLI::App& app);

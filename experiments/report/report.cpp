@@ -92,17 +92,17 @@ std::string makePage(const fs::path& runDir, const Json& summary) {
 
 }  // namespace
 
-void writeReport(const fs::path& runDir) {
-    const fs::path file = runDir / "summary.json";
-    const Json summary = readJson(file);
-    std::string page;
+std::string reportPage(const fs::path& runDir, const Json& summary) {
     try {
-        page = makePage(runDir, summary);
+        return makePage(runDir, summary);
     } catch (const Json::exception& error) {
-        fail(ExitCode::InvalidConfig, "{}: expected the summary of a run, found another structure: {}", file.string(),
-             error.what());
+        fail(ExitCode::InvalidConfig, "{}: expected the summary of a run, found another structure: {}",
+             (runDir / "summary.json").string(), error.what());
     }
-    writeFileAtomically(runDir / "report.html", page);
+}
+
+void writeReport(const fs::path& runDir) {
+    writeFileAtomically(runDir / "report.html", reportPage(runDir, readJson(runDir / "summary.json")));
 }
 
 }  // namespace ulam

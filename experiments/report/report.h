@@ -2,6 +2,9 @@
 // The report of a run: one HTML file that holds everything it shows and asks nobody for anything.
 
 #include <filesystem>
+#include <string>
+
+#include "core/config/json.h"
 
 namespace ulam {
 
@@ -14,6 +17,9 @@ namespace ulam {
 /// Fails with InputMissing without summary.json, InvalidConfig where a file is damaged or the images of a cell differ
 /// in size, CannotWrite where report.html cannot be written.
 void writeReport(const std::filesystem::path& runDir);
+
+/// The same page as text, of another summary than that of the folder. Errors as above.
+std::string reportPage(const std::filesystem::path& runDir, const Json& summary);
 
 /// What the images and chains of a page may take, in bytes of base64 text.
 inline constexpr double kReportImageBytes = 24e6;
