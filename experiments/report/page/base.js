@@ -110,6 +110,30 @@ function withTooltip(node, content) {
     return node;
 }
 
+const kArrows = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
+
+/// Calls move(dx, dy) for each press of an arrow key on an element.
+function withArrows(node, move) {
+    node.addEventListener("keydown", (e) => {
+        const direction = kArrows[e.key];
+        if (!direction) return;
+        e.preventDefault();
+        e.stopPropagation();
+        move(...direction);
+    });
+}
+
+/// Calls move(dx, dy) in pixels while an element is dragged.
+function withDrag(node, move) {
+    node.addEventListener("pointerdown", (e) => {
+        e.stopPropagation();
+        node.setPointerCapture(e.pointerId);
+        const dragging = (m) => move(m.movementX, m.movementY);
+        node.addEventListener("pointermove", dragging);
+        node.addEventListener("pointerup", () => node.removeEventListener("pointermove", dragging), { once: true });
+    });
+}
+
 /// A figure whose items the arrow keys read: `step(item, dx, dy)` is the neighbour of an item, `show(item)` marks it and
 /// returns [content of the tooltip, element to put it beside], `hide` takes the mark away.
 function readByKeys(root, { first, step, show, hide }) {
@@ -127,11 +151,8 @@ function readByKeys(root, { first, step, show, hide }) {
         hide();
         tooltip.hide();
     });
-    root.addEventListener("keydown", (e) => {
-        const direction = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[e.key];
-        if (!direction) return;
-        e.preventDefault();
-        item = step(item, ...direction);
+    withArrows(root, (dx, dy) => {
+        item = step(item, dx, dy);
         read();
     });
 }

@@ -1,25 +1,6 @@
 // The linked viewer: a stage that flips in place or is split between two pictures, tiles side by side, two movable crops
 // under each; one view for all.
 
-/// What can be shown of a picture: key, name, and of entries of cells the map that stands for it.
-const kShows = [
-    { id: "tones", name: "picture" },
-    { id: "error", key: "e", name: "relative error" },
-    { id: "deviation", key: "d", name: "spread over runs", map: (ids) => blockMap(ids.deviation, deviationColour) },
-    { id: "tests", key: "p", name: "p-values", map: (ids) => blockMap(ids.tests, testColour) },
-];
-
-const errorScale = (title) => ({
-    map: magma,
-    labels: [0.01, 0.1, 1, 10].map(percent).map((text) => text.replace(".0", "")),
-    title,
-});
-const kTestScale = {
-    map: (t) => diverging(2 * t - 1),
-    labels: ["p ≤ 10⁻⁴", "1", "p ≤ 10⁻⁴"],
-    title: "too dark · too bright",
-};
-
 class Viewer {
     constructor(group) {
         this.group = group;
@@ -39,7 +20,8 @@ class Viewer {
         const first = this.entries[0].picture;
         this.state.exposure = fittingExposure(this.reference ?? first);
         this.aspect = first.width / first.height;
-        this.insets = this.defaultInsets(first);
+        const judged = this.entries.filter((entry) => entry.kind === "replicate").at(-1);
+        this.insets = defaultCrops(judged?.picture, this.reference);
         this.shows = kShows.filter(({ id, map }) =>
             map ? group.cells.some((cell) => map(pictureIds(cell))) : id !== "error" || this.reference,
         );
@@ -83,23 +65,6 @@ class Viewer {
         const value = entry.cell.metrics?.[primaryMetric]?.values?.[replicate];
         entry.picture = picture(ids[which]);
         entry.note = `${which} run${isNumber(value) ? `, ${metricName(primaryMetric)} ${number(value)}` : ""}`;
-    }
-
-    /// Crops start where the last sampler is most too bright and most too dark, over an 8×8 division of the image.
-    defaultInsets(first) {
-        const judged = this.entries.filter((entry) => entry.kind === "replicate").at(-1)?.picture;
-        const size = 1 / 6,
-            at = (u, v) => ({ u: clamp(u, size / 2, 1 - size / 2), v: clamp(v, size / 2, 1 - size / 2), size });
-        if (!judged || !this.reference) return [at(0.3, 0.3), at(0.7, 0.7)];
-        const blocks = Array.from({ length: 64 }, (_, i) => ({ i, excess: 0 }));
-        for (let y = 0; y < first.height; ++y)
-            for (let x = 0; x < first.width; ++x) {
-                const block = blocks[Math.floor((8 * y) / first.height) * 8 + Math.floor((8 * x) / first.width)];
-                const p = 3 * (y * first.width + x) + 1;
-                block.excess += clamp(judged.rgb[p], 0, 10 * this.reference.rgb[p]) - this.reference.rgb[p];
-            }
-        blocks.sort((a, b) => a.excess - b.excess);
-        return [blocks.at(-1), blocks[0]].map(({ i }) => at(((i % 8) + 0.5) / 8, (Math.floor(i / 8) + 0.5) / 8));
     }
 
     build() {
@@ -214,37 +179,6 @@ class Viewer {
         );
     }
 
-    /// What the colours mean.
-    drawLegend() {
-        const bar = ({ map, labels, title }) => colourBar(map, labels, title);
-        const legends = {
-            error: [
-                bar(errorScale("relative error of a pixel")),
-                "√ of the mean over channels of (x − r)² ∕ (r² + 0.01): what relMSE averages, before the square.",
-            ],
-            deviation: [
-                bar(errorScale("relative standard deviation")),
-                "Of luminance over runs, relative to √(mean² + 0.01): the error of one run that is noise. What is brighter in the map of errors is bias, or luck.",
-            ],
-            tests: [
-                bar(kTestScale),
-                "Is the mean over runs the reference? Welch’s test corrected for skewness, at a false discovery rate of 5 %. Grey: not judged, the runs scatter too much or not at all.",
-            ],
-        };
-        const [ramp, text] = legends[this.state.show] ?? (this.reference ? legends.error : []);
-        this.legend.replaceChildren(...[ramp, text && el("p", {}, text)].filter(Boolean));
-    }
-
-    /// What the tests over a cell's map found, in words.
-    testsNote(cell) {
-        const map = kShows.find(({ id }) => id === "tests").map(pictureIds(cell));
-        if (!map) return "";
-        const tests = [...map.bytes].map(testOf).filter(Boolean),
-            wrong = tests.filter(({ p }) => p <= 0.05).length;
-        const size = map.block > 1 ? `blocks of ${map.block} × ${map.block}` : "pixels";
-        return tests.length ? `${wrong} of ${tests.length} ${size} differ` : "nothing can be judged";
-    }
-
     tile(entry, index) {
         const key = index < 9 ? String(index + 1) : null;
         const label = el(
@@ -284,24 +218,10 @@ class Viewer {
             class: `inset-frame inset-${index}`,
             "aria-label": `crop ${index + 1}: move with the arrow keys`,
         });
-        handle.addEventListener("keydown", (e) => {
-            const step = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[e.key];
-            if (!step) return;
-            e.preventDefault();
-            e.stopPropagation();
-            move(step[0] / 64, step[1] / 64);
-        });
-        handle.addEventListener("pointerdown", (e) => {
-            e.stopPropagation();
-            handle.setPointerCapture(e.pointerId);
-            const dragging = (m) => {
-                const size = this.imageSize(this.stage.clientWidth, this.stage.clientHeight);
-                move(m.movementX / size.width, m.movementY / size.height);
-            };
-            handle.addEventListener("pointermove", dragging);
-            handle.addEventListener("pointerup", () => handle.removeEventListener("pointermove", dragging), {
-                once: true,
-            });
+        withArrows(handle, (dx, dy) => move(dx / 64, dy / 64));
+        withDrag(handle, (dx, dy) => {
+            const size = this.imageSize(this.stage.clientWidth, this.stage.clientHeight);
+            move(dx / size.width, dy / size.height);
         });
         return handle;
     }
@@ -317,40 +237,19 @@ class Viewer {
             "aria-valuemin": 0,
             "aria-valuemax": 100,
         });
-        divider.addEventListener("keydown", (e) => {
-            const step = { ArrowLeft: -1, ArrowRight: 1 }[e.key];
-            if (!step) return;
-            e.preventDefault();
-            e.stopPropagation();
-            move(step / 50);
-        });
-        divider.addEventListener("pointerdown", (e) => {
-            e.stopPropagation();
-            divider.setPointerCapture(e.pointerId);
-            const dragging = (m) => move(m.movementX / this.stage.clientWidth);
-            divider.addEventListener("pointermove", dragging);
-            divider.addEventListener("pointerup", () => divider.removeEventListener("pointermove", dragging), {
-                once: true,
-            });
-        });
+        withArrows(divider, (dx) => move(dx / 50));
+        withDrag(divider, (dx) => move(dx / this.stage.clientWidth));
         return divider;
     }
 
     /// A canvas whose drags and wheel move the common view.
     linkedCanvas(name, entry) {
         const canvas = el("canvas", { class: name });
-        canvas.addEventListener("pointerdown", (e) => {
-            canvas.setPointerCapture(e.pointerId);
-            this.dragged = false;
-            const dragging = (m) => {
-                if (Math.abs(m.movementX) + Math.abs(m.movementY) > 0) this.dragged = true;
-                const size = this.imageSize(canvas.clientWidth, canvas.clientHeight);
-                this.set({ u: this.state.u - m.movementX / size.width, v: this.state.v - m.movementY / size.height });
-            };
-            canvas.addEventListener("pointermove", dragging);
-            canvas.addEventListener("pointerup", () => canvas.removeEventListener("pointermove", dragging), {
-                once: true,
-            });
+        canvas.addEventListener("pointerdown", () => (this.dragged = false));
+        withDrag(canvas, (dx, dy) => {
+            if (dx || dy) this.dragged = true;
+            const size = this.imageSize(canvas.clientWidth, canvas.clientHeight);
+            this.set({ u: this.state.u - dx / size.width, v: this.state.v - dy / size.height });
         });
         canvas.addEventListener(
             "wheel",
@@ -403,7 +302,7 @@ class Viewer {
     /// Keys that work anywhere on the page while this scene's viewer is the visible one.
     key(e) {
         const { state } = this;
-        const pan = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[e.key];
+        const pan = kArrows[e.key];
         if (pan && document.activeElement === this.stage)
             this.set({ u: state.u + (pan[0] * 0.1) / state.zoom, v: state.v + (pan[1] * 0.1) / state.zoom });
         else if (/^[1-9]$/.test(e.key) && Number(e.key) <= this.entries.length) this.set({ shown: Number(e.key) - 1 });
@@ -434,14 +333,8 @@ class Viewer {
             this.reference && entry.kind !== "reference"
                 ? ` · reference ${rgb(this.reference)} · relative error ${percent(image.relativeError(i, this.reference))}`
                 : "";
-        const ids = entry.cell ? pictureIds(entry.cell) : {};
-        const deviation = blockMap(ids.deviation, deviationColour)?.at(u, v),
-            test = testOf(blockMap(ids.tests, testColour)?.at(u, v) ?? 0);
-        const overRuns = [
-            isNumber(deviation) && ` · spread over runs ${percent(deviationOf(deviation))}`,
-            test && ` · p = ${pValue(test.p)}${test.p <= 0.05 ? `, too ${test.bright ? "bright" : "dark"}` : ""}`,
-        ];
-        this.readout.textContent = [`pixel ${x}, ${y}: ${rgb(image)}${against}`, ...overRuns].filter(Boolean).join("");
+        const overRuns = entry.cell ? placeNote(entry.cell, u, v) : "";
+        this.readout.textContent = `pixel ${x}, ${y}: ${rgb(image)}${against}${overRuns}`;
     }
 
     /// What stands for an entry now, and how much wider and higher it is than the picture.
@@ -450,7 +343,7 @@ class Viewer {
             { show, exposure } = this.state;
         if (entry.kind === "reference") return { canvas: image.shown(exposure) };
         if (show === "error") return { canvas: image.shown(exposure, this.reference) };
-        const map = kShows.find(({ id }) => id === show).map?.(pictureIds(entry.cell));
+        const map = showOf(show).map?.(pictureIds(entry.cell));
         return map ? { canvas: map.shown(), span: map.span, isMap: true } : { canvas: image.shown(exposure) };
     }
 
@@ -513,12 +406,7 @@ class Viewer {
                     colour: kInsetColours[k],
                 })),
             }));
-        const scale = {
-            error: errorScale("relative error"),
-            deviation: errorScale("relative standard deviation"),
-            tests: kTestScale,
-        }[this.state.show];
-        return pictureStrip(name, parts, { scale });
+        return pictureStrip(name, parts, { scale: showOf(this.state.show).scale });
     }
 
     draw() {
@@ -529,7 +417,8 @@ class Viewer {
         this.splitBox.checked = state.split !== null;
         this.leftChoice.selectedIndex = state.left;
         this.leftChoice.disabled = state.split === null;
-        this.drawLegend();
+        const explained = showOf(state.show).scale || !this.reference ? showOf(state.show) : showOf("error");
+        this.legend.replaceChildren(...showLegend(explained));
         this.worstBox.checked = state.worst;
         if (!this.stage.clientWidth) return;
         const shown = this.entries[state.shown];
@@ -543,7 +432,7 @@ class Viewer {
             tile.crops.forEach((crop, k) =>
                 this.paint(crop, { zoom: 1 / this.insets[k].size, ...this.insets[k] }, tile.entry),
             );
-            const tested = state.show === "tests" && tile.entry.kind === "mean" && this.testsNote(tile.entry.cell);
+            const tested = state.show === "tests" && tile.entry.kind === "mean" && testsNote(tile.entry.cell);
             tile.label.querySelector(".tile-note").textContent = tested || (tile.entry.note ?? "");
             tile.label.setAttribute("aria-pressed", i === state.shown);
         });

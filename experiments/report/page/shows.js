@@ -1,0 +1,85 @@
+// What the viewer can show of a picture, what the colours of it mean, and where its crops begin.
+
+const errorScale = (title) => ({
+    map: magma,
+    labels: [0.01, 0.1, 1, 10].map(percent).map((text) => text.replace(".0", "")),
+    title,
+});
+
+/// By key; `map` is what stands for the picture of a cell, `scale` and `meaning` explain it.
+const kShows = [
+    { id: "tones", name: "picture" },
+    {
+        id: "error",
+        key: "e",
+        name: "relative error",
+        scale: errorScale("relative error of a pixel"),
+        meaning: "√ of the mean over channels of (x − r)² ∕ (r² + 0.01): what relMSE averages, before the square.",
+    },
+    {
+        id: "deviation",
+        key: "d",
+        name: "spread over runs",
+        map: (ids) => blockMap(ids.deviation, deviationColour),
+        scale: errorScale("relative standard deviation"),
+        meaning:
+            "Of luminance over runs, relative to √(mean² + 0.01): the error of one run that is noise. What is brighter in the map of errors is bias, or luck.",
+    },
+    {
+        id: "tests",
+        key: "p",
+        name: "p-values",
+        map: (ids) => blockMap(ids.tests, testColour),
+        scale: {
+            map: (t) => diverging(2 * t - 1),
+            labels: ["p ≤ 10⁻⁴", "1", "p ≤ 10⁻⁴"],
+            title: "too dark · too bright",
+        },
+        meaning:
+            "Is the mean over runs the reference? Welch’s test corrected for skewness, at a false discovery rate of 5 %. Grey: not judged, the runs scatter too much or not at all.",
+    },
+];
+const showOf = (id) => kShows.find((show) => show.id === id);
+
+const showLegend = ({ scale, meaning }) =>
+    scale ? [colourBar(scale.map, scale.labels, scale.title), el("p", {}, meaning)] : [];
+
+/// What the tests over a cell's map found, in words.
+function testsNote(cell) {
+    const map = showOf("tests").map(pictureIds(cell));
+    if (!map) return "";
+    const tests = [...map.bytes].map(testOf).filter(Boolean),
+        wrong = tests.filter(({ p }) => p <= 0.05).length;
+    const size = map.block > 1 ? `blocks of ${map.block} × ${map.block}` : "pixels";
+    return tests.length ? `${wrong} of ${tests.length} ${size} differ` : "nothing can be judged";
+}
+
+/// What the runs of a cell say of a place of its picture, in words.
+function placeNote(cell, u, v) {
+    const ids = pictureIds(cell),
+        deviation = showOf("deviation").map(ids)?.at(u, v),
+        test = testOf(showOf("tests").map(ids)?.at(u, v) ?? 0);
+    return [
+        isNumber(deviation) && ` · spread over runs ${percent(deviationOf(deviation))}`,
+        test && ` · p = ${pValue(test.p)}${test.p <= 0.05 ? `, too ${test.bright ? "bright" : "dark"}` : ""}`,
+    ]
+        .filter(Boolean)
+        .join("");
+}
+
+/// Two crops, in parts of the image: where `judged` is most too bright and most too dark, over an 8×8 division of it.
+function defaultCrops(judged, reference) {
+    const size = 1 / 6,
+        at = (u, v) => ({ u: clamp(u, size / 2, 1 - size / 2), v: clamp(v, size / 2, 1 - size / 2), size });
+    if (!judged || !reference) return [at(0.3, 0.3), at(0.7, 0.7)];
+    const { width, height } = reference,
+        blocks = Array.from({ length: 64 }, (_, i) => ({ i, excess: 0 }));
+    for (let y = 0; y < height; ++y)
+        for (let x = 0; x < width; ++x) {
+            const block = blocks[Math.floor((8 * y) / height) * 8 + Math.floor((8 * x) / width)];
+            const p = 3 * (y * width + x) + 1;
+            block.excess += clamp(judged.rgb[p], 0, 10 * reference.rgb[p]) - reference.rgb[p];
+        }
+    blocks.sort((a, b) => a.excess - b.excess);
+    return [blocks.at(-1), blocks[0]].map(({ i }) => at(((i % 8) + 0.5) / 8, (Math.floor(i / 8) + 0.5) / 8));
+}
