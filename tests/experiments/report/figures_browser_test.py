@@ -5,6 +5,7 @@ Of the report only the program is used; the sweep is made up here.
 """
 
 import base64
+import functools
 import math
 import pathlib
 import re
@@ -62,6 +63,25 @@ def made_up_sweep():
     summary = {"name": "made up", "primary_metric": "relmse", "cells": cells, "comparisons": comparisons}
     empty = {"results": {}, "pictures": {}, "images": [], "shrink": 1}
     return {"summary": summary, "experiment": experiment, **empty}
+
+
+WEIGHT = "samplers.mlt.mutations.lens.weight"
+
+
+def made_up_cells(points):
+    """mlt alone, at points of a sweep."""
+    cells = [
+        {
+            "cell": f"hidden-mlt-{i}",
+            "scene": "hidden",
+            "sampler": "mlt",
+            "sweep": point,
+            "metrics": {"relmse": {"mean": 0.01 * (i + 1)}},
+        }
+        for i, point in enumerate(points)
+    ]
+    summary = {"name": "made up", "primary_metric": "relmse", "cells": cells}
+    return {"summary": summary, "results": {}, "pictures": {}, "images": [], "shrink": 1}
 
 
 def texts(browser, selector):
@@ -200,6 +220,29 @@ def prints_pdf(browser):
     check(browser.run("return !document.documentElement.className"), "the page stays as for printing")
 
 
+def chooses_the_pair_of_a_map(browser, page):
+    """Of three values two at a time, with a map for each value of the third; values of a zip make no map."""
+    grid = [{HOLES: h, CHAINS: c, WEIGHT: w} for h in (2, 4) for c in (10, 100) for w in (0.5, 1)]
+    zipped = [{HOLES: h, CHAINS: c} for h, c in ((2, 10), (4, 100), (8, 50))]
+    titles = "return [...document.querySelectorAll('#sweep .maps svg > text[font-weight]')].map((t) => t.textContent)"
+    with tempfile.TemporaryDirectory() as folder:
+        browser.open(with_data(page, made_up_cells(grid), pathlib.Path(folder) / "grid.html"))
+        pairs = browser.run("return [...document.querySelectorAll('#sweep label:last-of-type option')].length")
+        check(pairs == 3, f"{pairs} pairs of three values")
+        before = browser.run(titles)
+        lens = "mlt.mutations.lens.weight"
+        check(before == [f"mlt, {lens} = {w}" for w in ("0.5", "1")], f"the maps are {before}")
+        browser.focus("#sweep label:last-of-type select")
+        browser.press(DOWN)
+        check(browser.run(titles) == [f"mlt, mlt.chains = {c}" for c in (10, 100)], f"then {browser.run(titles)}")
+        browser.open(with_data(page, made_up_cells(zipped), pathlib.Path(folder) / "zip.html"))
+        check(browser.run(titles) == [], "values that vary together have a map")
+        lines = browser.run("return document.querySelectorAll('#sweep .difficulty .series').length")
+        check(lines == 1, f"{lines} lines for a zip of one sampler")
+    said = complaints(browser)
+    check(not said, f"the console says {said}")
+
+
 def main():
     tests = [
         loads_without_errors,
@@ -212,6 +255,7 @@ def main():
     ]
     with report(sys.argv) as page, tempfile.TemporaryDirectory() as folder:
         sweep = with_data(page, made_up_sweep(), pathlib.Path(folder) / "sweep.html")
+        tests.append(functools.partial(chooses_the_pair_of_a_map, page=page))
         return run_tests(tests, lambda browser: browser.open(sweep))
 
 

@@ -128,6 +128,22 @@ TEST_CASE("the mean over replicates is embedded, not a replicate") {
     CHECK(page.find(">" + encodeBase64(encodeRgb9e5(Image(2, 2, Rgb(2)))) + "<") != page.npos);
 }
 
+TEST_CASE("images of techniques are read by their names, in pairs and small") {
+    RunFolder folder;
+    const fs::path extra = folder.path / "cells/a/r000/extra";
+    fs::create_directories(extra);
+    writeExr((extra.parent_path() / "image.exr").string(), Image(300, 300, Rgb(1)));
+    for (const char* name : {"s10_t02_weighted", "s10_t02_unweighted", "s00_t03_weighted", "s0x_t03_weighted", "s_weighted",
+                             "samples_weighted", "s01_t", "albedo"})
+        writeExr((extra / (std::string(name) + ".exr")).string(), Image(300, 300, Rgb(0.5f)));
+    writeFileAtomically(folder.path / "summary.json", R"({"cells": [{"cell": "a", "scene": "s", "sampler": "x"}]})");
+    writeReport(folder.path);
+    const std::string page = readFile(folder.path / "report.html");
+    CHECK(page.find(R"("techniques":[{"s":10,"t":2,"weighted":)") != page.npos);
+    CHECK(countOf(page, R"("unweighted":)") == 1);  // of the second there is no other half
+    CHECK(countOf(page, R"({"width":100,"height":100})") == 2);
+}
+
 TEST_CASE("images too large for one page are halved until they fit") {
     RunFolder folder;
     fs::create_directories(folder.path / "cells/a/r000");
