@@ -4,6 +4,9 @@ const kTracedChains = 6;
 const kMostRankBins = 20;
 const kTrail = 6; // draws that stay visible behind a chain
 
+/// Of autocorrelations: those of longer lags are of few pairs.
+const mostLag = (chains) => Math.min(40, Math.floor(chains.draws / 3));
+
 function tracePlot(chains, scalar, name, paper) {
     const shown = Math.min(kTracedChains, chains.chains);
     const series = Array.from({ length: shown }, (_, i) => {
@@ -16,14 +19,14 @@ function tracePlot(chains, scalar, name, paper) {
         paper,
         title: "traces",
         series,
-        x: { label: "draw", values: [0, chains.draws - 1] },
+        x: { label: "draw", values: [0, chains.draws - 1], whole: true },
         y: { label: scalar.name, values: series.flatMap((s) => s.points.map((p) => p.y)) },
         describe: (s, p) => [el("b", {}, s.label), line(`draw ${p.x + 1}: ${number(p.y)}`)],
     });
 }
 
 function autocorrelationPlot(chains, scalar, cell, name, paper) {
-    const most = Math.min(chains.draws - 1, 40);
+    const most = mostLag(chains);
     const all = Array.from({ length: chains.chains }, (_, i) => chains.autocorrelation(scalar.id, i, most));
     const points = Array.from({ length: most + 1 }, (_, lag) => {
         const sorted = all.map((rho) => rho[lag]).sort((a, b) => a - b),
@@ -54,6 +57,7 @@ function autocorrelationPlot(chains, scalar, cell, name, paper) {
         x: {
             label: turns >= 1 ? `lag in draws (a draw: about ${count(turns, plain)} mutations)` : "lag in draws",
             values: [0, most],
+            whole: true,
         },
         y: { label: "ρ", values: [0, 1, ...common.map((p) => p.y), ...points.flatMap((p) => p.ci95)] },
         describe: (s, p) =>
@@ -266,13 +270,17 @@ function chainPanel(cell) {
         const kinds = [
             ["traces", (name, paper) => tracePlot(chains, scalar, name, paper)],
             ["ranks", (name, paper) => rankPlot(chains, scalar, name, paper)],
-            ["autocorrelation", (name, paper) => autocorrelationPlot(chains, scalar, cell, name, paper)],
-        ];
+            mostLag(chains) > 1 && [
+                "autocorrelation",
+                (name, paper) => autocorrelationPlot(chains, scalar, cell, name, paper),
+            ],
+        ].filter(Boolean);
         plots.replaceChildren(
             ...kinds.map(([kind, make]) => {
                 const name = `${kind} of ${scalar.name}, ${cell.group.title}, ${cell.label}`;
                 return figure(name, (paper) => make(name, paper));
             }),
+            ...[mixingTable(chains)].filter(Boolean),
         );
     };
     const { scalars } = chains;
@@ -298,13 +306,7 @@ function chainPanel(cell) {
             "div",
             { class: "chain-panel" },
             new ChainFilm(cell, chains).element,
-            el(
-                "div",
-                {},
-                scalars.length > 0 && el("label", { class: "choice" }, "scalar ", choice),
-                plots,
-                mixingTable(chains),
-            ),
+            el("div", {}, scalars.length > 0 && el("label", { class: "choice" }, "scalar ", choice), plots),
         ),
     );
 }

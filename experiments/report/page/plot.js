@@ -38,9 +38,13 @@ function logTicks(lo, hi, most = 7) {
     return ticks.length >= 2 ? ticks : linearTicks(lo, hi, most);
 }
 
-/// Of an axis { label, values, log, names, format, ticksAtValues }: `values` are what it must hold, and where its ticks
+/// Of an axis { label, values, log, whole, names, format, ticksAtValues }: `values` are what it must hold, and where its ticks
 /// stand if they are to; `names` stand at 0, 1, 2 … where the values are no numbers. `at` maps to [from, to].
-function makeScale({ label, values, log = false, names = null, format = plain, ticksAtValues = false }, from, to) {
+function makeScale(
+    { label, values, log = false, whole = false, names = null, format = plain, ticksAtValues = false },
+    from,
+    to,
+) {
     let lo = Math.min(...values),
         hi = Math.max(...values);
     if (names) [lo, hi] = [-0.5, names.length - 0.5];
@@ -55,7 +59,9 @@ function makeScale({ label, values, log = false, names = null, format = plain, t
     const at = (v) => from + (to - from) * place(v);
     const tick = (value) => ({ at: at(value), text: names ? String(names[value]) : format(value) });
     const ticks = (most) =>
-        (names ? names.map((_, i) => i) : log ? logTicks(lo, hi, most) : linearTicks(lo, hi, most)).map(tick);
+        (names ? names.map((_, i) => i) : log ? logTicks(lo, hi, most) : linearTicks(lo, hi, most))
+            .filter((v) => !whole || Number.isInteger(v))
+            .map(tick);
     /// As many ticks as fit side by side.
     const spacedTicks = () => {
         const fits = (found) =>
