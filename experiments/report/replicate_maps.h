@@ -21,7 +21,7 @@ struct ByteMap {
 /// The reference of a cell with the variance of its pixels.
 struct MapReference {
     Image image, variance;
-    double degrees;  ///< of the variance; infinite where it is known
+    double degrees = 0;  ///< of the variance; infinite where it is known
 };
 
 struct ReplicateMaps {

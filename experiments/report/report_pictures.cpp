@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <set>
 #include <string_view>
 #include <vector>
 
@@ -146,14 +147,20 @@ double pixelsOf(const std::vector<CellPlan>& plans) {
     return 0;
 }
 
-/// The smallest edge of blocks with which all pictures fit into `most` bytes.
-int shrinkFactor(const std::vector<CellPlan>& plans, double pixels, double most) {
+/// Bytes of base64 that the pictures and maps of all cells take for a pixel of the film.
+double bytesPerPixel(const std::vector<CellPlan>& plans) {
+    std::set<fs::path> references;
     double bytes = 0;
     for (const CellPlan& plan : plans) {
-        if (plan.replicates.empty()) continue;
-        // Four bytes a pixel for the mean, the median and the worst replicate and the reference, one for each map.
-        bytes += base64Size((plan.reference ? 4 * 4 + 2 : 3 * 4 + 1) * pixels);
+        if (plan.reference) references.insert(*plan.reference);
+        // Four for the mean, the median and the worst replicate, one for each map.
+        if (!plan.replicates.empty()) bytes += 3 * 4 + (plan.reference ? 2 : 1);
     }
+    return base64Size(bytes + 4 * double(references.size()));
+}
+
+/// The smallest factor by whose square the bytes must be divided to be at most `most`.
+int shrinkFactor(double bytes, double most) {
     int factor = 1;
     while (bytes / (double(factor) * factor) > most) ++factor;
     return factor;
@@ -165,19 +172,21 @@ public:
 
     PagePictures gather() {
         const double pixels = pixelsOf(plans_);
-        double techniques = 0, chains = 0;
+        double techniques = 0, chains = 0, chainBytes = 0;
         for (const CellPlan& plan : plans_) {
             techniques += 2 * double(plan.techniques.size());
-            chains += hasChains(plan) ? 1 : 0;
+            if (!hasChains(plan)) continue;
+            ++chains;
+            const Json& traces = plan.result["traces"];
+            chainBytes += base64Size(kDrawBytes * traces.at("chains").get<double>() * traces.at("draws").get<double>());
         }
-        techniqueFactor_ = 1;
-        const auto techniquePixels = [&] { return pixels / (double(techniqueFactor_) * techniqueFactor_); };
-        while (techniques > 0 && (base64Size(4 * techniques * techniquePixels()) > kTechniqueBytes ||
-                                  techniquePixels() > double(kTechniqueEdge) * kTechniqueEdge))
-            ++techniqueFactor_;
-        chainBytes_ = chains > 0 ? kChainBytes / chains : 0;
-        const double others = (techniques > 0 ? kTechniqueBytes : 0) + (chains > 0 ? kChainBytes : 0);
-        factor_ = shrinkFactor(plans_, pixels, kReportImageBytes - others);
+        const double techniqueBytes = base64Size(4 * techniques * pixels);
+        techniqueFactor_ = std::max(shrinkFactor(techniqueBytes, kTechniqueBytes),
+                                    shrinkFactor(pixels, double(kTechniqueEdge) * kTechniqueEdge));
+        if (chains > 0) chainShare_ = kChainBytes / chains;
+        const double others =
+            techniqueBytes / (double(techniqueFactor_) * techniqueFactor_) + std::min(chainBytes, kChainBytes);
+        factor_ = shrinkFactor(pixels * bytesPerPixel(plans_), kReportImageBytes - others);
 
         PagePictures page;
         page.cells = Json::object();
@@ -216,22 +225,25 @@ private:
     void embedMaps(const CellPlan& plan, Json& ids) {
         std::vector<fs::path> files;
         for (const auto& [replicate, folder] : plan.replicates) files.push_back(folder / "image.exr");
-        const std::optional<MapReference> reference = readReference(plan);
-        const ReplicateMaps maps = mapReplicates(files, reference ? &*reference : nullptr, factor_);
+        const ReplicateMaps maps = mapReplicates(files, referenceOf(plan), factor_);
         ids["mean"] = elements_.add(shrink(maps.mean, factor_));
         if (files.size() > 1) ids["deviation"] = elements_.add(maps.deviation, maps.mean);
         if (maps.tests) ids["tests"] = elements_.add(*maps.tests, maps.mean);
     }
 
-    /// Null where the variance of its pixels is not known.
-    static std::optional<MapReference> readReference(const CellPlan& plan) {
-        if (!plan.reference) return std::nullopt;
-        const fs::path variance = plan.reference->parent_path() / "variance.exr";
-        if (!fs::exists(variance)) return std::nullopt;
-        const Json result = readJsonIfThere(plan.reference->parent_path() / "result.json");
-        const double parts = result.is_object() ? result.value("replicates", 0.0) : 0;
-        return MapReference{readImage(plan.reference->string()), readImage(variance.string()),
-                            parts > 1 ? parts - 1 : std::numeric_limits<double>::infinity()};
+    /// Null where the variance of its pixels is not known. Cells that share a reference follow each other: one is kept.
+    const MapReference* referenceOf(const CellPlan& plan) {
+        if (!plan.reference) return nullptr;
+        const fs::path folder = plan.reference->parent_path(), variance = folder / "variance.exr";
+        if (!fs::exists(variance)) return nullptr;
+        if (referenceFolder_ != folder) {
+            const Json result = readJsonIfThere(folder / "result.json");
+            const double parts = result.is_object() ? result.value("replicates", 0.0) : 0;
+            reference_ = {readImage(plan.reference->string()), readImage(variance.string()),
+                          parts > 1 ? parts - 1 : std::numeric_limits<double>::infinity()};
+            referenceFolder_ = folder;
+        }
+        return &reference_;
     }
 
     void embedTechniques(const CellPlan& plan, Json& ids) {
@@ -247,7 +259,7 @@ private:
     void embedChains(const CellPlan& plan, Json& ids) {
         if (!hasChains(plan)) return;
         const double draws = plan.result["traces"].at("draws").get<double>();
-        const int most = int(chainBytes_ / base64Size(kDrawBytes * std::max(1.0, draws)));
+        const int most = int(chainShare_ / base64Size(kDrawBytes * std::max(1.0, draws)));
         auto chains = readChainData(plan.folder(), plan.result, most);
         if (!chains) return;
         ids["chains"] = std::move(chains->fields);
@@ -260,7 +272,9 @@ private:
 
     std::vector<CellPlan> plans_;
     int factor_ = 1, techniqueFactor_ = 1;
-    double chainBytes_ = 0;
+    double chainShare_ = 0;  ///< bytes for the chains of one cell
+    fs::path referenceFolder_;
+    MapReference reference_;
     Elements elements_;
     std::map<fs::path, std::size_t> files_;
 };
