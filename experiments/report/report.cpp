@@ -19,9 +19,6 @@ namespace fs = std::filesystem;
 Json readJson(const fs::path& path) {
     return JsonDocument::fromFile(path).json();
 }
-Json readJsonIfThere(const fs::path& path) {
-    return fs::exists(path) ? readJson(path) : Json();
-}
 
 /// JSON that cannot end the element it stands in.
 std::string scriptSafe(const Json& json) {

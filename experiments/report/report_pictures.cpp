@@ -31,10 +31,6 @@ constexpr double base64Size(double bytes) {
     return bytes * 4 / 3;
 }
 
-Json readJsonIfThere(const fs::path& path) {
-    return fs::exists(path) ? JsonDocument::fromFile(path).json() : Json();
-}
-
 /// The folders of a cell's replicates that left an image, by number.
 std::map<std::size_t, fs::path> replicateFolders(const fs::path& cellFolder) {
     std::map<std::size_t, fs::path> folders;
@@ -280,6 +276,10 @@ private:
 };
 
 }  // namespace
+
+Json readJsonIfThere(const fs::path& path) {
+    return fs::exists(path) ? JsonDocument::fromFile(path).json() : Json();
+}
 
 PagePictures gatherPictures(const fs::path& runDir, const Json& cells, const std::string& metric) {
     std::vector<CellPlan> plans;

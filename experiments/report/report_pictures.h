@@ -15,6 +15,9 @@ struct PagePictures {
     int shrink = 1;        ///< edge of the blocks of pixels that became one
 };
 
+/// Null where there is no such file.
+Json readJsonIfThere(const std::filesystem::path& path);
+
 /// Of the cells of summary.json, from the files below RUN_DIR; what is not there is left out. `metric` is the primary
 /// one.
 PagePictures gatherPictures(const std::filesystem::path& runDir, const Json& cells, const std::string& metric);
