@@ -79,7 +79,7 @@ class Work(unittest.TestCase):
         return lease
 
     def test_workers_of_whom_one_is_killed(self):
-        slow = dict(EXPERIMENT, budget={"spp": 4000}, replicates=3)
+        slow = dict(EXPERIMENT, budget={"spp": 3000}, replicates=3)
         self.begin(slow)
         for joined in (False, True):
             with self.subTest(joined=joined):
@@ -165,6 +165,25 @@ class Work(unittest.TestCase):
         self.assertEqual(status["totals"]["failed"], 1)
         self.assertIn("processes have ended", json.dumps(status))
         self.compare()
+
+    def test_replicates_that_until_adds_are_shared_too(self):
+        self.begin(dict(EXPERIMENT, replicates=4, samplers={"path": {"type": "path"}}, until={"relative_ci": 0.001, "max_replicates": 16},
+                        reference={"sampler": "path", "budget": {"spp": 10000}, "replicates": 8}))
+        run = self.start(*tiny.run_arguments("--resume", "--lease", 2))
+        self.wait_for(lambda: (self.folder / "run/run.lock").exists())
+        worker = self.start(*self.work())
+        for process in (run, worker):
+            _, err = process.communicate(timeout=120)
+            self.assertEqual(process.returncode, 0, err)
+        self.assertGreater(self.status()["totals"]["done"], 8)
+        self.compare()
+
+    def test_what_jobs_are_is_checked_first(self):
+        tiny.write_inputs(self.folder)
+        for jobs, message in (("pbs", "expected slurm or slurm:OPTIONS"), ("slurm:array=1", "array is set by ulam"),
+                              ("slurm:task-minutes=0", "a number above 0 for task-minutes"), ("slurm:--hold", "expected KEY=VALUE")):
+            self.assertIn(message, self.ulam(*tiny.run_arguments("--jobs", jobs), expect=2).err)
+        self.assertFalse((self.folder / "run").exists())
 
     def test_another_plan_is_refused(self):
         self.begin()
