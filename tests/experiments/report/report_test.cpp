@@ -97,11 +97,11 @@ TEST_CASE("shrinking averages whole blocks and what is left at the edges") {
 
 TEST_CASE("a report holds its run and asks for nothing") {
     RunFolder folder(std::getenv("ULAM_REPORT_DIR"));
-    tests::FakeRun(folder.path, 256, 8, 8).write();
+    tests::FakeRun(folder.path, 128, 8, 8).write();
     writeReport(folder.path);
     const std::string page = readFile(folder.path / "report.html");
 
-    CHECK(page.size() < 12'000'000);
+    CHECK(page.size() < 5'000'000);
     // 2 references, per cell the mean, the median and the worst replicate and two maps, and of two cells five techniques, of
     // the others their chains.
     CHECK(countOf(page, "<script type=\"text/plain\"") == 2 + 6 * 5 + 2 * 5 * 2 + 4);
