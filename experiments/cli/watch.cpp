@@ -86,8 +86,8 @@ private:
 
 void watch(const std::string& folder, int wanted) {
     const std::atomic<bool>& stopped = watchSignals();
-    // A run on this machine comes first: what is started from here on has a tenth of its weight.
-    [[maybe_unused]] const int niceness = ::nice(10);
+    // A run on this machine comes first. Threads that are started from here on inherit it.
+    [[maybe_unused]] const int niceness = ::nice(5);
     LiveReport report(folder);
     httplib::Server server;
     answer(server, report);

@@ -289,12 +289,4 @@ Plan makePlan(const JsonDocument& document, const fs::path& file) {
     return Planner(document, file).make();
 }
 
-Plan planOfRun(const fs::path& runDir) {
-    const JsonDocument resolved = JsonDocument::fromFile(runDir / "resolved.json");
-    const JsonDocument origin = JsonDocument::fromFile(runDir / "provenance.json");
-    // The experiment's file as it was named, seen from the folder in which the run was started.
-    const fs::path file = fs::path(origin.root().at("folder").string()) / resolved.root().at("source").string();
-    return makePlan(JsonDocument::fromFile(runDir / "experiment.json"), file);
-}
-
 }  // namespace ulam

@@ -89,8 +89,4 @@ struct Plan {
 /// Parses every point of the sweep, builds the scenes and drops cells that a sweep leaves as they are.
 Plan makePlan(const JsonDocument& document, const std::filesystem::path& file);
 
-/// The plan of a run, from the experiment.json, resolved.json and provenance.json of its folder; scene files are where
-/// they were. Fails with InputMissing and InvalidConfig.
-Plan planOfRun(const std::filesystem::path& runDir);
-
 }  // namespace ulam

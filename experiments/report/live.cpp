@@ -1,8 +1,7 @@
 #include "experiments/report/live.h"
 
 #include "core/base/error.h"
-#include "experiments/engine/provenance.h"
-#include "experiments/engine/replicate.h"
+#include "experiments/engine/run_folder.h"
 #include "experiments/engine/summary.h"
 #include "experiments/report/report.h"
 
@@ -46,12 +45,13 @@ void LiveReport::update() {
     nextLook_ = nextTime(begin, kLookInterval, kLookShare);
 
     std::shared_ptr<const std::string> made;
-    const bool something = seen.done > 0 || seen.isFinished();
-    if (something && seen != made_ && Clock::now() >= nextReport_) {
+    const Json content = {seen.planned.time_since_epoch().count(), seen.totals, seen.referencesReady, seen.finished};
+    const bool something = seen.finished || seen.totals.value("done", 0) > 0;
+    if (something && content != made_ && Clock::now() >= nextReport_) {
         const auto start = Clock::now();
         try {
             made = std::make_shared<const std::string>(reportPage(runDir_, summary(seen)));
-            made_ = seen;
+            made_ = content;
             trouble_.clear();
         } catch (const std::exception& error) {
             trouble_ = error.what();
@@ -64,75 +64,64 @@ void LiveReport::update() {
 
 LiveReport::Seen LiveReport::look() {
     Seen seen;
-    // The first and the last of the files that a plan is made from.
-    seen.planned = std::min(timeOf(runDir_ / "experiment.json"), timeOf(runDir_ / "provenance.json"));
+    seen.planned = timeOf(runDir_ / "resolved.json");
+    seen.summarized = timeOf(runDir_ / "summary.json");
     if (seen.planned == FileTime::min()) {
         seen.message = fmt::format("waiting for a run in {}", runDir_.string());
         return seen;
     }
-    if (seen.planned != planned_) {
+    const Json status = statusOfRun(runDir_);
+    seen.name = status["name"].get<std::string>();
+    seen.totals = status["totals"];
+    for (const Json& reference : status["references"]) {
+        ++seen.references;
+        seen.referencesReady += reference["state"] == "ready";
+    }
+    seen.finished = isSummaryOf(seen);
+    const bool running = seen.totals["running"].get<int>() > 0;
+    seen.message = seen.finished                            ? "finished"
+                   : seen.referencesReady < seen.references ? "making references"
+                   : running                                ? "running"
+                                                            : "nobody works at it now";
+    return seen;
+}
+
+/// Whether summary.json is newer than the plan and of as many replicates as are done.
+bool LiveReport::isSummaryOf(const Seen& seen) {
+    if (seen.summarized < seen.planned) return false;
+    if (summarized_.first != seen.summarized) {
+        int replicates = 0;
+        const Json summary = JsonDocument::fromFile(runDir_ / "summary.json").json();
+        for (const Json& cell : summary.value("cells", Json::array())) replicates += cell.value("replicates", 0);
+        summarized_ = {seen.summarized, replicates};
+    }
+    return summarized_.second == seen.totals["done"].get<int>();
+}
+
+Json LiveReport::summary(const Seen& seen) {
+    if (seen.finished) return JsonDocument::fromFile(runDir_ / "summary.json").json();
+    if (planned_ != seen.planned) {
         plan_.reset();  // two at a time may not have room
         plan_ = planOfRun(runDir_);
         planned_ = seen.planned;
     }
-    seen.references = int(plan_->references.size());
-    for (const PlannedReference& reference : plan_->references) seen.referencesDone += hasReference(reference);
-    for (const Cell& cell : plan_->cells) countReplicates(cell, seen);
-    seen.summarized = timeOf(runDir_ / "summary.json");
-    if (seen.isFinished()) {
-        if (summarized_ != seen.summarized) failures_ = int(summary(seen).value("failures", Json::array()).size());
-        summarized_ = seen.summarized;
-        seen.failed = failures_;
-        seen.begun = 0;
-    }
-    seen.message = seen.isFinished()                       ? "finished"
-                   : seen.referencesDone < seen.references ? "making references"
-                                                           : "running";
-    return seen;
-}
-
-void LiveReport::countReplicates(const Cell& cell, Seen& seen) const {
-    seen.all += cell.task.replicates;
-    for (int r = 0; r < cell.task.replicates; ++r) {
-        const fs::path folder = replicateFolder(cellFolder(runDir_, cell), r);
-        const FileTime time = timeOf(folder / "result.json");
-        seen.lastResult = std::max(seen.lastResult, time);
-        if (time > FileTime::min())
-            ++seen.done;
-        else if (timeOf(folder) > FileTime::min())
-            ++seen.begun;
-    }
-}
-
-bool LiveReport::hasReference(const PlannedReference& reference) const {
-    return timeOf(runDir_ / "references" / reference.key / "result.json") > FileTime::min();
-}
-
-Json LiveReport::summary(const Seen& seen) const {
-    if (seen.isFinished()) return JsonDocument::fromFile(runDir_ / "summary.json").json();
     std::vector<Failure> failures;
-    for (const Cell& cell : plan_->cells)
-        if (!hasReference(plan_->references[cell.reference]))
+    for (const Cell& cell : plan_->cells) {
+        const PlannedReference& reference = plan_->references[cell.reference];
+        if (timeOf(runDir_ / "references" / reference.key / "result.json") == FileTime::min())
             failures.push_back({cell.task.scene->name, cell.task.name, {}, "it has no reference yet"});
-    Json made = summarize(*plan_, runDir_, failures);
-    if (made["cells"].empty())
-        fail(ExitCode::InvalidConfig, "no replicate that is finished was made by this version of the program, {}",
-             programVersion());
-    return made;
+    }
+    return summarize(*plan_, runDir_, failures);
 }
 
 void LiveReport::publish(const Seen& seen, std::shared_ptr<const std::string> page) {
     const std::lock_guard lock(mutex_);
     const int version = state_["version"].get<int>() + (page ? 1 : 0);
     state_ = {{"version", version},
-              {"name", plan_ ? plan_->name : ""},
+              {"name", seen.name},
               {"message", seen.message},
-              {"done", seen.done},
-              {"begun", seen.begun},
-              {"failed", seen.failed},
-              {"all", seen.all},
-              {"references_done", seen.referencesDone},
-              {"references", seen.references}};
+              {"totals", seen.totals},
+              {"references", {{"ready", seen.referencesReady}, {"all", seen.references}}}};
     if (page) page_ = std::move(page);
 }
 

@@ -21,8 +21,8 @@ public:
     /// called often, it mostly returns at once. Called by one thread.
     void update();
 
-    /// For the page around the report: its "version" (0: there is none), "name" and "message", numbers of replicates
-    /// "done", "begun", "failed" and "all", and of references "references_done" and "references".
+    /// For the page around the report: its "version" (0: there is none), the run's "name", a "message", "totals" of
+    /// replicates as in statusOfRun, and of "references" how many are "ready" and there are in "all".
     Json state() const;
     /// As report.html; null where nothing is finished. Both may be called by any thread.
     std::shared_ptr<const std::string> page() const;
@@ -33,28 +33,26 @@ private:
 
     /// What the folder holds now.
     struct Seen {
-        /// When files were written; the earliest time: there is none.
-        FileTime planned = FileTime::min(), lastResult = FileTime::min(), summarized = FileTime::min();
-        int done = 0, begun = 0, failed = 0, all = 0, referencesDone = 0, references = 0;
-        std::string message;
-
-        bool isFinished() const { return summarized > FileTime::min() && summarized >= lastResult; }
-        bool operator==(const Seen&) const = default;
+        /// When resolved.json and summary.json were written; the earliest time: they are not there.
+        FileTime planned = FileTime::min(), summarized = FileTime::min();
+        std::string name, message;
+        Json totals = Json::object();
+        int references = 0, referencesReady = 0;
+        bool finished = false;  ///< summary.json is of all that is done
     };
 
     Seen look();
-    void countReplicates(const Cell& cell, Seen& seen) const;
-    bool hasReference(const PlannedReference& reference) const;
-    Json summary(const Seen& seen) const;
+    bool isSummaryOf(const Seen& seen);
+    Json summary(const Seen& seen);
     void publish(const Seen& seen, std::shared_ptr<const std::string> page);
 
     const std::filesystem::path runDir_;
     std::optional<Plan> plan_;
-    FileTime planned_ = FileTime::min();  ///< when the files of plan_ were written
-    FileTime summarized_ = FileTime::min();
-    int failures_ = 0;          ///< in the summary written then
-    std::optional<Seen> made_;  ///< what the report was made of
-    std::string trouble_;       ///< why the newest report could not be made
+    FileTime planned_ = FileTime::min();  ///< of the resolved.json that plan_ is of
+    std::pair<FileTime, int> summarized_ = {FileTime::min(),
+                                            0};  ///< when summary.json was written, of how many replicates
+    Json made_;                                  ///< what the report was made of
+    std::string trouble_;                        ///< why the newest report could not be made
     Clock::time_point nextLook_, nextReport_;
 
     mutable std::mutex mutex_;  // of what follows

@@ -15,7 +15,7 @@ import time
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "report"))
-from report_browser_test import Browser  # noqa: E402
+from browser import Browser  # noqa: E402
 
 ULAM = os.path.abspath(os.environ.get("ULAM", "build/release/ulam"))
 EXPERIMENT = {
@@ -88,7 +88,7 @@ class WatchTest(unittest.TestCase):
 
     def test_the_page_follows_a_run_to_its_end(self):
         watcher, address = self.watch()
-        self.until(lambda: "waiting for a run in run" in self.state()["message"], "the waiting")
+        self.until(lambda: "waiting for a run in run" in self.state().get("message", ""), "the waiting")
         self.assertEqual(self.ask("/report")[0], 404)
         self.assertFalse((self.folder / "run").exists())
         browser = Browser()
@@ -98,7 +98,7 @@ class WatchTest(unittest.TestCase):
         self.until(lambda: "waiting for a run in run" in text("message"), "the message in the page")
 
         run = self.start("run", "small.json", "-o", "run", "--threads", 1)
-        part = self.until(lambda: browser.run(REPORT), "a report")
+        part = self.until(lambda: (now := browser.run(REPORT)) and len(now["summary"]["cells"]) == 2 and now, "a report")
         self.assertIsNone(run.poll(), "the run ended before the page showed any of it")
         self.assertEqual(part["verdicts"], 1)
         self.assertRegex(text("counts"), r"^\d+ of 2000 replicates done, 1 in work")
@@ -106,12 +106,12 @@ class WatchTest(unittest.TestCase):
         # What the reader looks at stays.
         browser.run("""const report = document.querySelector("iframe").contentWindow;
             report.scrollTo(0, 300);
-            report.reportView.set([{ ...report.reportView.get()[0], zoom: 2, exposure: 1.5, kind: "replicate" }])""")
+            report.reportView.set([{ ...report.reportView.get()[0], zoom: 2, exposure: 1.5, shown: "mean mlt" }])""")
         later = self.until(lambda: (now := browser.run(REPORT)) and now["summary"] != part["summary"] and now, "the next report")
-        self.assertEqual((later["scroll"], later["view"]["zoom"], later["view"]["exposure"], later["view"]["kind"]),
-                         (300, 2, 1.5, "replicate"))
+        self.assertEqual((later["scroll"], later["view"]["zoom"], later["view"]["exposure"], later["view"]["shown"]),
+                         (300, 2, 1.5, "mean mlt"))
 
-        self.until(lambda: self.state()["done"] >= 4, "the second replicate")
+        self.until(lambda: self.state()["totals"]["done"] >= 4, "the second replicate")
         run.send_signal(signal.SIGINT)
         run.communicate(timeout=60)
         run = self.start("run", "small.json", "-o", "run", "--resume", "--set", "replicates=2")
