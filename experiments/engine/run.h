@@ -24,7 +24,7 @@ struct RunOptions {
     double leaseSeconds = kLeaseSeconds;
     /// Names of tasks and numbers of replicates that are to be done; none: all.
     std::optional<std::set<std::pair<std::string, int>>> share = {};
-    std::function<void(const std::string& name, Image image)> show;  ///< see PreviewPlan; none: no previews
+    std::function<void(const std::string& name, Image image)> show = {};  ///< see PreviewPlan; none: no previews
 };
 
 struct Failure {
