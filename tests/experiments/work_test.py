@@ -79,7 +79,7 @@ class Work(unittest.TestCase):
         return lease
 
     def test_workers_of_whom_one_is_killed(self):
-        slow = dict(EXPERIMENT, budget={"spp": 3000}, replicates=3)
+        slow = dict(EXPERIMENT, budget={"spp": 2000}, replicates=3)
         self.begin(slow)
         for joined in (False, True):
             with self.subTest(joined=joined):
@@ -168,7 +168,7 @@ class Work(unittest.TestCase):
 
     def test_replicates_that_until_adds_are_shared_too(self):
         self.begin(dict(EXPERIMENT, replicates=4, samplers={"path": {"type": "path"}}, until={"relative_ci": 0.001, "max_replicates": 16},
-                        reference={"sampler": "path", "budget": {"spp": 10000}, "replicates": 8}))
+                        reference={"sampler": "path", "budget": {"spp": 4000}, "replicates": 8}))
         run = self.start(*tiny.run_arguments("--resume", "--lease", 2))
         self.wait_for(lambda: (self.folder / "run/run.lock").exists())
         worker = self.start(*self.work())
