@@ -19,7 +19,7 @@ ULAM = os.path.abspath(os.environ.get("ULAM", "build/release/ulam"))
 WIDTH, HEIGHT = 48, 32
 FILM = ["--set", f"scene.film.width={WIDTH}", "--set", f"scene.film.height={HEIGHT}"]
 # More than a connection takes while nobody reads.
-LARGE = {"film": ["--set", "scene.film.width=1200", "--set", "scene.film.height=900"], "budget": ("--mutations", 100_000)}
+LARGE = {"film": ["--set", "scene.film.width=1200", "--set", "scene.film.height=900"], "budget": ("--rays", 10_000), "sampler": "path"}
 EXPERIMENT = {
     "scenes": {"box": {"type": "cornell_box"}},
     "film": {"width": WIDTH, "height": HEIGHT},
@@ -191,20 +191,19 @@ class TevTest(unittest.TestCase):
         self.assertEqual(process.returncode, expect, f"{arguments}\n{out}\n{err}")
         return err
 
-    def render(self, output, *more, budget=("--spp", 64), film=FILM):
-        return self.ulam("render", "cornell_box", "--sampler", "mlt", "--seed", 7, *budget, *film, "-o", output, *more)
+    def render(self, output, *more, sampler="mlt", budget=("--spp", 64), film=FILM):
+        return self.ulam("render", "cornell_box", "--sampler", sampler, "--seed", 7, *budget, *film, "-o", output, *more)
 
     def bytes(self, name):
         return (self.folder / name).read_bytes()
 
     def test_the_viewer_gets_previews_and_the_image_that_is_written(self):
         viewer = Viewer()
-        err = self.render("a.exr", "--tev", viewer.address, "--stats", "a.json", budget=("--time", 2.5))
+        err = self.render("a.exr", "--tev", viewer.address, "--stats", "a.json", budget=("--time", 2.2))
         viewer.close()
         self.assertNotIn("viewer", err)
         self.assertEqual(viewer.created, ["a.exr"])
-        self.assertGreaterEqual(len(viewer.updates), 3)  # after one second, after two, at the end
-        self.assertLessEqual(len(viewer.updates), 4)
+        self.assertIn(len(viewer.updates), (2, 3))  # after one second, perhaps after two, at the end
         self.assertEqual(viewer.images["a.exr"], read_exr(self.folder / "a.exr"))
         result = json.loads(self.bytes("a.json"))
         self.assertGreater(result["preview_seconds"], 0)
