@@ -102,7 +102,7 @@ TEST_CASE("snapshots do not change the result, and are results themselves") {
     }
 }
 
-TEST_CASE("previews do not change the result; there are several, and the last is the image") {
+TEST_CASE("previews do not change the result, and the last is the image") {
     const Scene scene = buildScene(pathScene("diffuse").dictionary);
     for (const Job& job : jobs()) {
         INFO(job.sampler.dump());
@@ -112,7 +112,7 @@ TEST_CASE("previews do not change the result; there are several, and the last is
         CHECK(watched.units == plain.units);
         CHECK(watched.statistics.rays == plain.statistics.rays);
         CHECK(sameBytes(watched.image, plain.image));
-        REQUIRE(shown.size() > 2);
+        REQUIRE(shown.size() > 1);
         CHECK(sameBytes(shown.back(), plain.image));
         CHECK_FALSE(sameBytes(shown.front(), plain.image));
         CHECK(watched.previewSeconds > 0);
