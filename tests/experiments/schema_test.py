@@ -33,8 +33,8 @@ BASE = {
     "film": {"width": 16, "height": 16},
     "samplers": {"mlt": {"type": "mlt"}, "other": {"type": "pssmlt"}},
     "baseline": "other",
-    "budget": {"time": 0.001},
-    "reference": {"sampler": "mlt", "budget": {"time": 0.002}},
+    "budget": {"time": 0.03},
+    "reference": {"sampler": "mlt", "budget": {"time": 0.5}},
 }
 VALUES = [0, 1, -1, 2, 0.5, 1e9, 1e30, "x", "", True, None, [], {}, [1], [0, 1, 2], {"type": "x"}, ["relmse"]]
 # What a schema cannot know: names that stand elsewhere in the file, which files there are, what a sweep's values are for.
