@@ -88,20 +88,26 @@ std::vector<Trace> splitInHalves(std::span<const Trace> chains) {
 
 /// Normal scores of the ranks over all chains together (Blom's 3/8), ties at their average rank.
 std::vector<Trace> rankNormalised(std::vector<Trace> chains) {
-    std::vector<double*> order;
+    struct Draw {
+        double value;
+        double* place;
+    };
+    std::vector<Draw> order;
+    order.reserve(chains.size() * chains.front().size());
     for (Trace& chain : chains) {
-        for (double& x : chain) order.push_back(&x);
+        for (double& x : chain) order.push_back({x, &x});
     }
-    std::ranges::sort(order, {}, [](const double* x) { return *x; });
-    const boost::math::normal normal;
+    std::ranges::sort(order, {}, &Draw::value);
+    // In double and no further: a run asks for the score of each of its draws.
+    using namespace boost::math::policies;
+    const boost::math::normal_distribution<double, policy<promote_double<false>>> normal;
     const auto count = static_cast<double>(order.size());
     for (std::size_t first = 0; first < order.size();) {
-        const double value = *order[first];
         std::size_t last = first;
-        while (last < order.size() && *order[last] == value) ++last;
+        while (last < order.size() && order[last].value == order[first].value) ++last;
         const double rank = static_cast<double>(first + last + 1) / 2;
         const double score = boost::math::quantile(normal, (rank - 0.375) / (count + 0.25));
-        for (; first < last; ++first) *order[first] = score;
+        for (; first < last; ++first) *order[first].place = score;
     }
     return chains;
 }
