@@ -25,7 +25,7 @@ except ImportError:
 
 ULAM = os.path.abspath(os.environ.get("ULAM", "build/release/ulam"))
 FULL = os.environ.get("ULAM_TEST_LEVEL") == "full"
-QUICK_CASES = 240
+QUICK_CASES = 300
 
 # Little time: planning tries each cell.
 BASE = {

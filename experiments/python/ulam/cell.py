@@ -16,22 +16,29 @@ if TYPE_CHECKING:
     from .run import Run
 
 
-class Replicate:
-    """One complete run of a sampler, with seeds of its own."""
+class Rendered:
+    """A folder with an image and what is known of it."""
 
-    def __init__(self, folder: Path, number: int):
+    def __init__(self, folder: Path):
         self.folder = folder
-        self.number = number
 
     @cached_property
     def result(self) -> dict[str, Any]:
-        """result.json"""
+        """result.json; of a reference its kind, budget, and whether its halves agree."""
         return read_json(self.folder / "result.json")
 
     @cached_property
     def image(self) -> np.ndarray:
         """Linear RGB, float32, shape (height, width, 3)."""
         return read_exr(self.folder / "image.exr")
+
+
+class Replicate(Rendered):
+    """One complete run of a sampler, with seeds of its own."""
+
+    def __init__(self, folder: Path, number: int):
+        super().__init__(folder)
+        self.number = number
 
     def snapshot(self, number: int) -> np.ndarray:
         """The image at a part of the budget, as `image`; `result["snapshots"][number]` says which part."""
@@ -55,21 +62,8 @@ class Replicate:
         return f"Replicate({str(self.folder)!r})"
 
 
-class Reference:
+class Reference(Rendered):
     """What images are compared with."""
-
-    def __init__(self, folder: Path):
-        self.folder = folder
-
-    @cached_property
-    def result(self) -> dict[str, Any]:
-        """result.json of the reference: its kind, budget, and whether its halves agree."""
-        return read_json(self.folder / "result.json")
-
-    @cached_property
-    def image(self) -> np.ndarray:
-        """Linear RGB, float32, shape (height, width, 3)."""
-        return read_exr(self.folder / "image.exr")
 
     @cached_property
     def variance(self) -> np.ndarray:

@@ -20,7 +20,7 @@ double varianceOfLog(double sigma, std::size_t replicates) {
 
 TEST_CASE("comparisons are decided as often as computed") {
     const auto [replicates, sigma, ratio, trials] = GENERATE(table<std::size_t, double, double, int>(
-        {{8, 0.2, 0.75, 400}, {8, 0.2, 0.85, 400}, {16, 0.3, 0.75, 100}}));
+        {{8, 0.2, 0.75, 1000}, {8, 0.2, 0.85, 1000}, {10, 0.4, 0.6, 100}, {16, 0.3, 0.75, 100}}));
     CAPTURE(replicates, sigma, ratio);
     const double decided = frequency(trials, 91, [&, n = replicates, s = sigma, r = ratio](PhiloxStream& random) {
         std::vector<double> errors = lognormalErrors(n, s, random);
