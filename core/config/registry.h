@@ -58,12 +58,9 @@ public:
 
     /// Fails with InvalidConfig where there is no such name, with the place and the nearest one.
     const Entry& find(std::string_view name, const JsonNode& where) const {
-        std::vector<std::string> names;
-        for (const Entry* entry : entries()) {
+        for (const Entry* entry : entries())
             if (entry->name == name) return *entry;
-            names.push_back(entry->name);
-        }
-        unknownName(Interface::kind(), name, names, where.where());
+        unknownName(Interface::kind(), name, names(), where.where());
     }
 
     /// Sorted by name.
@@ -71,6 +68,17 @@ public:
         if (!problems_.empty()) fail(ExitCode::InvalidConfig, "{}", problems_.front());
         std::vector<const Entry*> result;
         for (const auto& entry : entries_) result.push_back(entry.get());
+        return result;
+    }
+
+    bool contains(std::string_view name) const {
+        return std::ranges::any_of(entries(), [&](const Entry* entry) { return entry->name == name; });
+    }
+
+    /// Sorted.
+    std::vector<std::string> names() const {
+        std::vector<std::string> result;
+        for (const Entry* entry : entries()) result.push_back(entry->name);
         return result;
     }
 

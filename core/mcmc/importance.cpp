@@ -5,7 +5,8 @@
 namespace ulam {
 
 std::unique_ptr<Importance> makeImportance(const std::string& name) {
-    return Registry<Importance>::instance().create(JsonNode(Json{{"type", name}}));
+    const JsonNode sampler(Json{{"target", name}});  // whose parameter it is
+    return Registry<Importance>::instance().find(name, sampler.at("target")).create(JsonNode(Json::object()));
 }
 
 namespace {

@@ -40,10 +40,9 @@ ArgumentDocument documentArgument(const std::string& argument) {
     if (argument.starts_with("{")) return {JsonDocument::fromText(argument, "command line"), fs::current_path()};
     const fs::path path = argument;
     if (looksLikeFile(argument)) return {JsonDocument::fromFile(path), path.parent_path(), path};
-    std::vector<std::string> names;
-    for (const auto* entry : Registry<Interface>::instance().entries()) names.push_back(entry->name);
-    if (std::find(names.begin(), names.end(), argument) == names.end())
-        unknownName(Interface::kind(), argument, names, "the command line (a file's name ends in .json)");
+    const auto& registry = Registry<Interface>::instance();
+    if (!registry.contains(argument))
+        unknownName(Interface::kind(), argument, registry.names(), "the command line (a file's name ends in .json)");
     return {JsonDocument::fromText(Json({{"type", argument}}).dump(), argument), fs::current_path()};
 }
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "core/config/json.h"
+#include "core/config/json_number.h"
 #include "core/image/image_io.h"
 #include "core/image/metrics.h"
 #include "experiments/cli/commands.h"
@@ -28,12 +28,10 @@ void compareImages(const CompareArguments& a) {
     for (const Metric& metric : metrics()) {
         const Metric::Map map = metric.errorMap(image, reference, variance ? &*variance : nullptr);
         const double value = metric.value(map), trimmed = metric.trimmedValue(map);
-        // The psnr of equal images is infinite, which JSON cannot say.
-        const auto number = [](double x) { return std::isfinite(x) ? Json(x) : Json(); };
         Json constants = Json::object();
         for (const MetricConstant& c : metric.constants) constants[std::string(c.name)] = c.value;
-        values[std::string(metric.name)] = {{"value", number(value)},
-                                            {"trimmed_value", number(trimmed)},
+        values[std::string(metric.name)] = {{"value", numberOrNull(value)},
+                                            {"trimmed_value", numberOrNull(trimmed)},
                                             {"debiased", metric.debiased && variance.has_value()},
                                             {"higher_is_better", metric.higherIsBetter},
                                             {"definition", metric.definition},

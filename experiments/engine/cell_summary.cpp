@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/config/json_number.h"
 #include "core/image/image_io.h"
 #include "core/image/metrics.h"
 #include "experiments/engine/replicate.h"
@@ -21,14 +22,6 @@ namespace {
 namespace fs = std::filesystem;
 using statistics::Interval;
 
-/// null for what is not finite: an infinite psnr, a variation of nothing.
-Json number(double x) {
-    return std::isfinite(x) ? Json(x) : Json();
-}
-template <class I>
-Json interval(const std::optional<I>& i) {
-    return i ? Json{number(i->low), number(i->high)} : Json();
-}
 std::optional<Interval> meanInterval(const std::vector<double>& values, double confidence) {
     const auto all = std::ranges::all_of(values, [](double x) { return std::isfinite(x); });
     const auto found = all ? statistics::meanInterval(values, confidence) : std::nullopt;
@@ -71,7 +64,7 @@ public:
             json[field] = mean(field);
         json["seconds"] = mean("wall_seconds");
         json["normalization_cv"] = mean("normalization") > 0 && replicates_.size() > 1
-                                       ? number(statistics::coefficientOfVariation(values("normalization")))
+                                       ? numberOrNull(statistics::coefficientOfVariation(values("normalization")))
                                        : Json(0);
         addSpectrum();
         addConvergence();
@@ -106,11 +99,11 @@ private:
             }
             const double worst = metric.higherIsBetter ? std::ranges::min(full) : std::ranges::max(full);
             Json perReplicate = Json::array();
-            for (const double x : full) perReplicate.push_back(number(x));
-            all[name] = {{"mean", number(statistics::mean(full))},
-                         {"ci95", interval(meanInterval(full, plan_.design.confidence()))},
-                         {"trimmed_mean", number(statistics::mean(trimmed))},
-                         {"worst_replicate", number(worst)},
+            for (const double x : full) perReplicate.push_back(numberOrNull(x));
+            all[name] = {{"mean", numberOrNull(statistics::mean(full))},
+                         {"ci95", intervalOrNull(meanInterval(full, plan_.design.confidence()))},
+                         {"trimmed_mean", numberOrNull(statistics::mean(trimmed))},
+                         {"worst_replicate", numberOrNull(worst)},
                          {"values", perReplicate}};
             if (name == primary_.name) summary_.errors.errors = full;
         }
@@ -200,7 +193,7 @@ private:
         const auto slope = statistics::fitSlope(curves);
         flatter_ = slope && slope->flatter && primary_.debiased;
         summary_.json["slope"] =
-            slope ? Json{{"value", slope->slope}, {"ci95", interval(slope->ci95)}, {"flatter_than_minus_one", flatter_}}
+            slope ? Json{{"value", slope->slope}, {"ci95", intervalOrNull(slope->ci95)}, {"flatter_than_minus_one", flatter_}}
                   : Json();
         summary_.curves = std::move(curves);
     }
@@ -211,8 +204,8 @@ private:
                 {"rays", costs["rays"]},
                 {"mutations", costs["mutations"]},
                 {"samples", costs["samples"]},
-                {"error", number(statistics::mean(errors))},
-                {"ci95", interval(meanInterval(errors, plan_.design.confidence()))}};
+                {"error", numberOrNull(statistics::mean(errors))},
+                {"ci95", intervalOrNull(meanInterval(errors, plan_.design.confidence()))}};
     }
 
     void addMutations() {
@@ -260,11 +253,11 @@ private:
             std::vector<double> column;
             for (const auto& replicate : shares) column.push_back(replicate[f]);
             all[features.names[f]] = {{"share", found[f].share},
-                                      {"share_ci95", interval(found[f].ci95)},
+                                      {"share_ci95", intervalOrNull(found[f].ci95)},
                                       {"truth", found[f].truth ? Json(*found[f].truth) : Json()},
                                       {"judged", found[f].judged},
                                       {"p_adjusted", found[f].judged ? Json(found[f].pAdjusted) : Json()},
-                                      {"relative_sd", number(statistics::coefficientOfVariation(column))},
+                                      {"relative_sd", numberOrNull(statistics::coefficientOfVariation(column))},
                                       {"jumps_per_million", mutations > 0 ? Json(1e6 * jumps / mutations) : Json()},
                                       {"per_replicate", column}};
             if (found[f].truth && !found[f].judged) ++unjudgedFeatures_;

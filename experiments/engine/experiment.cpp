@@ -102,10 +102,9 @@ private:
         if (node.isObject()) return parseSampler("reference", node, experiment_.maxDepth);
         if (!node.isString()) node.expected("the name of a sampler, or an object with its type and parameters");
         const std::string& name = node.string();
-        std::vector<std::string> known;
-        for (const auto* entry : Registry<Sampler>::instance().entries()) known.push_back(entry->name);
-        if (std::find(known.begin(), known.end(), name) != known.end())
+        if (Registry<Sampler>::instance().contains(name))
             return parseSampler("reference", JsonNode(Json{{"type", name}}), experiment_.maxDepth);
+        std::vector<std::string> known = Registry<Sampler>::instance().names();
         for (const NamedSampler& sampler : experiment_.samplers) {
             if (sampler.name == name) return sampler;
             known.push_back(sampler.name);

@@ -30,7 +30,7 @@ void putOver(const JsonNode& node, const JsonDocument& document, Json& base, Pla
     for (const auto& [name, member] : node.members()) putOver(member, document, base[name], places);
 }
 
-void checkName(const JsonNode& node, const fs::path& file) {
+void checkFileName(const JsonNode& node, const fs::path& file) {
     if (file.empty() || file.has_parent_path()) node.expected("a file in the folder of this one", "paths in it mean the same then");
 }
 
@@ -42,7 +42,7 @@ void addFile(const fs::path& file, std::vector<fs::path> open, Json& merged, Pla
     open.push_back(fs::weakly_canonical(file));
     if (const auto extends = root.find("extends")) {
         for (const JsonNode& node : extends->isArray() ? extends->elements() : std::vector{*extends}) {
-            checkName(node, node.string());
+            checkFileName(node, node.string());
             const fs::path other = file.parent_path() / node.string();
             if (std::find(open.begin(), open.end(), fs::weakly_canonical(other)) != open.end())
                 node.fail(fmt::format("{} would extend itself", inQuotes(node.string())));

@@ -23,19 +23,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kPrefix = "lease-";
+constexpr std::string_view kLeasePrefix = "lease-";
 constexpr int kRenewalsPerLease = 4;
 
 fs::path leaseFile(const fs::path& folder, int number) {
-    return folder / fmt::format("{}{}", kPrefix, number);
+    return folder / fmt::format("{}{}", kLeasePrefix, number);
 }
 
 /// The number in the name of a lease; 0 for other names.
 int numberOf(const std::string& name) {
     int number = 0;
-    if (!name.starts_with(kPrefix)) return 0;
+    if (!name.starts_with(kLeasePrefix)) return 0;
     const char* const end = name.data() + name.size();
-    const auto [stop, error] = std::from_chars(name.data() + kPrefix.size(), end, number);
+    const auto [stop, error] = std::from_chars(name.data() + kLeasePrefix.size(), end, number);
     return error == std::errc() && stop == end && number > 0 ? number : 0;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/config/json_number.h"
 #include "experiments/statistics/chains.h"
 
 namespace ulam {
@@ -11,8 +12,6 @@ namespace {
 // what sets such groups apart has not mixed.
 constexpr size_t kChainsPerSuperchain = 10;
 constexpr size_t kShortestTrace = 8;
-
-Json finite(double x) { return std::isfinite(x) ? Json(x) : Json(); }
 
 /// Place of a pixel along the Z-order curve, on which neighbours are neighbours in the image.
 uint64_t zOrder(const Vec2f& raster) {
@@ -47,9 +46,9 @@ Json mixing(const std::vector<ChainTrace>& traces, double seconds) {
             for (size_t i = 0; i < length; ++i) values[c][i] = double(draws[c][i][size_t(scalar)]);
         if (isConstant(values)) continue;  // such as the path length of states that are whole samples
         const double size = statistics::effectiveSampleSize(values);
-        Json entry = {{"split_rhat", finite(statistics::splitRhat(values))}, {"ess", finite(size)}, {"ess_per_second", finite(size / seconds)}};
+        Json entry = {{"split_rhat", numberOrNull(statistics::splitRhat(values))}, {"ess", numberOrNull(size)}, {"ess_per_second", numberOrNull(size / seconds)}};
         entry["nested_rhat"] =
-            chains < 2 * kChainsPerSuperchain ? Json() : finite(statistics::nestedRhat(std::span(values).first(chains), kChainsPerSuperchain));
+            chains < 2 * kChainsPerSuperchain ? Json() : numberOrNull(statistics::nestedRhat(std::span(values).first(chains), kChainsPerSuperchain));
         out[ChainTrace::kNames[scalar]] = entry;
     }
     return out;

@@ -6,12 +6,12 @@
 namespace ulam {
 namespace {
 
-constexpr std::string_view kPrefix = "path1-";
+constexpr std::string_view kTokenPrefix = "path1-";
 
 }  // namespace
 
 std::string pathToken(const RunIdentity& run, const Json& repeat, const NonFiniteEvent& event) {
-    return packToken(kPrefix, {{"repeat", repeat},
+    return packToken(kTokenPrefix, {{"repeat", repeat},
                                {"scene_hash", run.sceneHash},
                                {"key", {run.key.low, run.key.high}},
                                {"kind", int(event.kind)},
@@ -22,7 +22,7 @@ std::string pathToken(const RunIdentity& run, const Json& repeat, const NonFinit
 }
 
 PathToken readPathToken(const std::string& token) {
-    const JsonDocument document = unpackToken(kPrefix, token);
+    const JsonDocument document = unpackToken(kTokenPrefix, token);
     const JsonNode root = document.root();
     const auto key = root.at("key").elements();
     if (key.size() != 2) root.at("key").expected("two numbers");

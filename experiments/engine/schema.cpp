@@ -36,13 +36,6 @@ Json namedLike(const Json& schema) {
     return members;
 }
 
-template <class Interface>
-Json registeredNames() {
-    Json names = Json::array();
-    for (const auto* entry : Registry<Interface>::instance().entries()) names.push_back(entry->name);
-    return names;
-}
-
 /// A registered plugin with its parameters, and with its "type".
 template <class Entry>
 Json pluginSchema(const Entry& entry) {
@@ -84,7 +77,7 @@ Json samplerSchema(const Registry<Sampler>::Entry& entry) {
     Json schema = pluginSchema(entry);
     Json& properties = schema["properties"];
     properties.erase("max_depth");
-    if (properties.contains("target")) refine(schema, "target", {{"enum", registeredNames<Importance>()}, {"default", properties["target"]["default"]}});
+    if (properties.contains("target")) refine(schema, "target", {{"enum", Registry<Importance>::instance().names()}, {"default", properties["target"]["default"]}});
     if (properties.contains("mutations")) refine(schema, "mutations", mixSchema(entry.name));
     return schema;
 }

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "core/base/file.h"
+#include "core/config/json_number.h"
 #include "core/image/metrics.h"
 #include "experiments/statistics/comparison.h"
 #include "experiments/statistics/speedup.h"
@@ -13,13 +14,6 @@ namespace ulam {
 namespace {
 
 namespace fs = std::filesystem;
-
-Json finite(double x) {
-    return std::isfinite(x) ? Json(x) : Json();
-}
-Json interval(const std::optional<statistics::Interval>& i) {
-    return i ? Json{finite(i->low), finite(i->high)} : Json();
-}
 
 Json constantsOf(const std::vector<std::string>& names) {
     Json all = Json::object();
@@ -60,9 +54,9 @@ Json comparisonJson(const Judged& judged, const std::string& metric, const stati
             {"baseline_cell", judged.baseline->json["cell"]},
             {"metric", metric},
             {"ratio", optionalNumber(c.ratio)},
-            {"ci95", interval(c.ci95)},
+            {"ci95", intervalOrNull(c.ci95)},
             {"speedup", optionalNumber(speedup.value)},
-            {"speedup_ci95", interval(speedup.ci95)},
+            {"speedup_ci95", intervalOrNull(speedup.ci95)},
             {"p", c.p},
             {"p_adjusted", c.pAdjusted},
             {"paired", design.paired},

@@ -43,8 +43,7 @@ void spellOutSampler(Json& reference, const Json& samplers) {
     }
     Json& sampler = reference["sampler"];
     if (!sampler.is_string() || !samplers.contains(sampler.get<std::string>())) return;
-    for (const auto* registered : Registry<Sampler>::instance().entries())
-        if (registered->name == sampler.get<std::string>()) return;
+    if (Registry<Sampler>::instance().contains(sampler.get<std::string>())) return;
     sampler = Json(samplers[sampler.get<std::string>()]);
 }
 

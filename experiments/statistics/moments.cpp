@@ -51,8 +51,12 @@ double quantileOfSorted(std::span<const double> sorted, double q) {
 }
 
 double quantile(std::span<const double> values, double q) {
+    if (values.empty()) return kNaN;
+    // Only the two that are asked for have to be in their places.
     std::vector<double> sorted(values.begin(), values.end());
-    std::sort(sorted.begin(), sorted.end());
+    const auto below = sorted.begin() + static_cast<std::ptrdiff_t>(q * static_cast<double>(sorted.size() - 1));
+    std::nth_element(sorted.begin(), below, sorted.end());
+    if (below + 1 != sorted.end()) std::iter_swap(below + 1, std::min_element(below + 1, sorted.end()));
     return quantileOfSorted(sorted, q);
 }
 

@@ -11,7 +11,6 @@ namespace {
 
 using namespace audit;
 
-constexpr uint64_t kChunk = 500;
 // Many chains of a few steps: a lone mutation need not reach every state.
 constexpr double kStepsPerChain = 64;
 

@@ -15,6 +15,9 @@ struct Place {
     std::string text;
 };
 
+/// Trials that a thread takes at a time.
+inline constexpr uint64_t kChunk = 500;
+
 struct MutationCase {
     MutationCase(const std::string& mutation, const AuditSettings& settings);
 

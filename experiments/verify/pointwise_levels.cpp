@@ -14,8 +14,6 @@ namespace {
 
 using namespace audit;
 
-constexpr uint64_t kChunk = 500;
-
 const char* nameOf(Space space) {
     return space == Space::Path ? "paths" : "numbers";
 }

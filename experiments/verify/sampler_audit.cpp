@@ -39,7 +39,7 @@ std::string compareSampler(Json config, const audit::AuditScene& scene, const st
 
 namespace {
 
-Finding auditImages(const std::string& sampler, const AuditSettings& settings, References& references) {
+Finding auditSamplerImages(const std::string& sampler, const AuditSettings& settings, References& references) {
     const Work& work = settings.work;
     std::vector<ImageComparison> comparisons;
     std::vector<std::string> notJudged;
@@ -62,7 +62,7 @@ Finding auditImages(const std::string& sampler, const AuditSettings& settings, R
 
 SubjectReport auditSampler(const std::string& sampler, const AuditSettings& settings, References& references) {
     SubjectReport report{.kind = "sampler", .name = sampler};
-    report.findings.push_back(timed([&] { return auditImages(sampler, settings, references); }));
+    report.findings.push_back(timed([&] { return auditSamplerImages(sampler, settings, references); }));
     return report;
 }
 

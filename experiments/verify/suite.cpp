@@ -10,13 +10,6 @@
 namespace ulam::verify {
 namespace {
 
-template <class Interface>
-std::vector<std::string> registeredNames() {
-    std::vector<std::string> names;
-    for (const auto* entry : Registry<Interface>::instance().entries()) names.push_back(entry->name);
-    return names;
-}
-
 /// One kind of subject: what was asked for, or all there is where nothing was.
 struct Kind {
     std::string name;
@@ -50,11 +43,11 @@ Report verify(const Options& options) {
     };
     std::vector<Kind> kinds{
         {"kernel", options.kernels, {"metropolis_hastings"}, [](const std::string& name, size_t) { return auditKernel(name); }},
-        {"target", options.targets, registeredNames<Importance>(),
+        {"target", options.targets, Registry<Importance>::instance().names(),
          [&](const std::string& name, size_t n) { return auditTarget(name, settings(name, n), references); }},
-        {"mutation", options.mutations, registeredNames<Mutation>(),
+        {"mutation", options.mutations, Registry<Mutation>::instance().names(),
          [&](const std::string& name, size_t n) { return auditMutation(name, settings(name, n), references); }},
-        {"sampler", options.samplers, registeredNames<Sampler>(),
+        {"sampler", options.samplers, Registry<Sampler>::instance().names(),
          [&](const std::string& name, size_t n) { return auditSampler(name, settings(name, n), references); }}};
     for (const Kind& kind : kinds) kind.checkNames(), asked += kind.asked.size();
     for (Kind& kind : kinds) {

@@ -37,7 +37,7 @@ Finding auditFunction(const Importance& target, RandomKey key) {
     return finding;
 }
 
-Finding auditImages(const std::string& target, const AuditSettings& settings, References& references) {
+Finding auditTargetImages(const std::string& target, const AuditSettings& settings, References& references) {
     const Work& work = settings.work;
     std::vector<ImageComparison> comparisons;
     double done = 0;
@@ -59,7 +59,7 @@ SubjectReport auditTarget(const std::string& target, const AuditSettings& settin
     SubjectReport report{.kind = "target", .name = target};
     const RandomKey key = makeKey(settings.seed, cellOf(target));
     report.findings.push_back(timed([&] { return auditFunction(*makeImportance(target), key); }));
-    report.findings.push_back(timed([&] { return auditImages(target, settings, references); }));
+    report.findings.push_back(timed([&] { return auditTargetImages(target, settings, references); }));
     return report;
 }
 

@@ -6,9 +6,7 @@
 namespace ulam {
 
 std::vector<std::string> samplerNames() {
-    std::vector<std::string> names;
-    for (const auto* entry : Registry<Sampler>::instance().entries()) names.push_back(entry->name);
-    return names;
+    return Registry<Sampler>::instance().names();
 }
 
 bool isChainSampler(const std::string& name) {

@@ -75,6 +75,9 @@ const Registry<Animal>& animals() {
 TEST_CASE("registered things are listed by name with what is known about them", "[registry]") {
     const auto entries = animals().entries();
     REQUIRE(entries.size() == 2);
+    CHECK(animals().names() == std::vector<std::string>{"cat", "dog"});
+    CHECK(animals().contains("dog"));
+    CHECK_FALSE(animals().contains("do"));
     CHECK(entries[0]->name == "cat");
     CHECK(entries[1]->name == "dog");
     CHECK(entries[1]->summary == "barks");
