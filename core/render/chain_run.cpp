@@ -3,6 +3,7 @@
 #include "core/image/splat_queue.h"
 #include "core/render/parallel.h"
 #include "core/render/replay.h"
+#include "core/render/state_counts.h"
 
 #include <chrono>
 #include <thread>
@@ -51,7 +52,9 @@ struct ChainRun::Worker : StepObserver {
           film(r.context_.scene.sensor->width(), r.context_.scene.sensor->height(), r.context_.scene.filter),
           statistics(r.mix_.size()),
           featureEnergy(r.context_.scene.features.names.size()),
-          largeStepProbability(r.mix_.largeStepProbability()) {}
+          largeStepProbability(r.mix_.largeStepProbability()) {
+        if (r.parameters_.acceptanceImages) states.emplace(film.width(), film.height());
+    }
 
     void observe(const Chain& before, const Proposal& proposal, const StepInfo& info) override {
         last = info.mutation;
@@ -64,6 +67,7 @@ struct ChainRun::Worker : StepObserver {
         const Sample &x = before.x, &y = proposal.y;
         MutationStatistics& s = statistics[size_t(info.mutation)];
         ++s.proposed;
+        if (states) states->add(x.splats[0].raster, info.accepted);
         if (info.reject != Reject::None) {
             ++s.zero;
             ++s.rejected[size_t(info.reject)];
@@ -118,6 +122,7 @@ struct ChainRun::Worker : StepObserver {
     void take(Worker& other) {
         film.take(other.film);
         nonFinite.take(other.nonFinite);
+        if (states) states->take(*other.states);
         for (size_t i = 0; i < statistics.size(); ++i) {
             statistics[i].merge(other.statistics[i]);
             other.statistics[i] = {};
@@ -132,6 +137,7 @@ struct ChainRun::Worker : StepObserver {
     template <class Archive>
     void archive(Archive& a) {
         a(film, nonFinite, statistics, featureEnergy, jumps, nullSteps);
+        if (states) a(*states);
     }
 
     const ChainRun& run;
@@ -142,6 +148,7 @@ struct ChainRun::Worker : StepObserver {
     NonFiniteLog nonFinite;
     std::vector<MutationStatistics> statistics;
     std::vector<FixedSum> featureEnergy;
+    std::optional<StateCounts> states;
     double largeStepProbability;
     uint64_t jumps = 0, nullSteps = 0;
     // Of the chain at work:
@@ -187,11 +194,13 @@ std::vector<MemoryPhase> ChainRun::memory(const RunContext& context, const Chain
     const MemoryNeed held{fmt::format("{} chains", parameters.chains), chains * double(sizeof(ChainSlot) + ChainTrace::kMost * sizeof(ChainTrace::Draw)), "fewer chains"};
     const MemoryNeed reported{"what is reported of them", chains * (2 * sizeof(ChainTrace) + trace), "fewer chains"};
     const MemoryNeed bootstrap{fmt::format("{:.3g} bootstrap samples", samples), samples * sizeof(double) + chains * sizeof(Start), "a smaller bootstrap"};
-    const double film = Film::bytes(context.pixels(), false, true);
+    const double pixels = context.pixels(), film = Film::bytes(pixels, false, true) + (parameters.acceptanceImages ? StateCounts::bytes(pixels) : 0);
     // Of a chain's path only what is used is written.
     const double state = chains * (sizeof(Chain) * (limits.maxDepth + 2.0) / (kMaxDepth + 2.0) + trace);
-    // Seeding, work, and between rounds of work, when one film has everything.
-    return {{{bootstrap, held}, bootstrap.bytes}, {{filmsOf(context.workers, film), held}}, {{filmsOf(1, film), held, reported}, film + state}};
+    // Between rounds of work one film has everything.
+    MemoryPhase paused{{filmsOf(1, film), held, reported}, film + state};
+    if (parameters.acceptanceImages) paused.parts.push_back({"images of acceptance", 2 * pixels * sizeof(Rgb), "no acceptance_images"});
+    return {{{bootstrap, held}, bootstrap.bytes}, {{filmsOf(context.workers, film), held}}, paused};
 }
 
 bool ChainRun::prepare(const StopFunction& stop) {
@@ -457,6 +466,7 @@ void ChainRun::report(uint64_t units, RenderStatistics& s) {
                                          {"samples_for_smallest_share", plan_->samplesForSmallestShare},
                                          {"samples_for_largest_share", plan_->samplesForLargestShare},
                                          {"samples", plan_->samples}};
+    if (all.states) all.states->develop(s.extraImages);
     s.diagnostics["null_steps"] = all.nullSteps;
     s.diagnostics["seeds_lost_to_rounding"] = seedsLost_;
 }

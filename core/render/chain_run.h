@@ -15,11 +15,13 @@ struct ChainParameters {
     int chains = 1000;
     int bootstrap = 0;
     std::string target = "luminance";
+    bool acceptanceImages = false;
     template <class V>
     void describe(V& v) {
         v("chains", chains, {.help = "Markov chains, whatever the number of threads", .min = 1, .max = 1e6});
         v("bootstrap", bootstrap, {.help = "bidirectional samples that seed the chains and give the image's scale; 0: as many as the image's expected error asks for, for 1/20 to 1/2 of the budget", .min = 0, .max = 1e8});
         v("target", target, {.help = "what chains are distributed as: a scalar of the contribution (ulam list targets)"});
+        v("acceptance_images", acceptanceImages, {.help = "also write how many proposals were made from states in each pixel, and how many of them were accepted"});
     }
 };
 

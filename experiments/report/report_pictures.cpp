@@ -13,6 +13,7 @@
 
 #include "core/image/image_io.h"
 #include "experiments/report/chain_data.h"
+#include "experiments/report/chain_maps.h"
 #include "experiments/report/picture_code.h"
 #include "experiments/report/replicate_maps.h"
 #include "experiments/report/report.h"
@@ -143,6 +144,10 @@ double pixelsOf(const std::vector<CellPlan>& plans) {
     return 0;
 }
 
+bool hasChains(const CellPlan& plan) {
+    return plan.result.is_object() && plan.result.value("traces", Json()).is_object();
+}
+
 /// Bytes of base64 that the pictures and maps of all cells take for a pixel of the film.
 double bytesPerPixel(const std::vector<CellPlan>& plans) {
     std::set<fs::path> references;
@@ -151,6 +156,7 @@ double bytesPerPixel(const std::vector<CellPlan>& plans) {
         if (plan.reference) references.insert(*plan.reference);
         // Four for the mean, the median and the worst replicate, one for each map.
         if (!plan.replicates.empty()) bytes += 3 * 4 + (plan.reference ? 2 : 1);
+        if (hasChains(plan)) bytes += 1 + 1.0 / (kRhatBlock * kRhatBlock);
     }
     return base64Size(bytes + 4 * double(references.size()));
 }
@@ -194,10 +200,6 @@ public:
     }
 
 private:
-    static bool hasChains(const CellPlan& plan) {
-        return plan.result.is_object() && plan.result.value("traces", Json()).is_object();
-    }
-
     std::size_t addFile(const fs::path& file) {
         const auto known = files_.find(file);
         if (known != files_.end()) return known->second;
@@ -219,12 +221,15 @@ private:
     }
 
     void embedMaps(const CellPlan& plan, Json& ids) {
-        std::vector<fs::path> files;
-        for (const auto& [replicate, folder] : plan.replicates) files.push_back(folder / "image.exr");
+        std::vector<fs::path> folders, files;
+        for (const auto& [replicate, folder] : plan.replicates) folders.push_back(folder), files.push_back(folder / "image.exr");
         const ReplicateMaps maps = mapReplicates(files, referenceOf(plan), factor_);
         ids["mean"] = elements_.add(shrink(maps.mean, factor_));
         if (files.size() > 1) ids["deviation"] = elements_.add(maps.deviation, maps.mean);
         if (maps.tests) ids["tests"] = elements_.add(*maps.tests, maps.mean);
+        if (!hasChains(plan)) return;
+        if (const auto rhat = mapRhat(folders, factor_)) ids["rhat"] = elements_.add(*rhat, maps.mean);
+        if (const auto acceptance = mapAcceptance(folders, factor_)) ids["acceptance"] = elements_.add(*acceptance, maps.mean);
     }
 
     /// Null where the variance of its pixels is not known. Cells that share a reference follow each other: one is kept.

@@ -37,6 +37,8 @@ if FULL:
                       "--set", "scene.film.width=32", "--set", "scene.film.height=32"],
         "images of techniques": ["cornell_box", "--sampler", "bdpt", "--spp", "0.1", "--set", "sampler.technique_images=true",
                                  "--set", "scene.film.width=512", "--set", "scene.film.height=512"],
+        "images of acceptance": ["cornell_box", "--sampler", "mlt", "--spp", "0.2", "--set", "sampler.acceptance_images=true",
+                                 *LARGE_FILM],
         "many threads": ["cornell_box", "--sampler", "path", "--spp", "0.5", "--threads", "8", *LARGE_FILM],
     }
 

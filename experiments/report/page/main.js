@@ -2,9 +2,7 @@
 
 function subtitle() {
     const experiment = data.experiment ?? {};
-    const budget = Object.entries(experiment.budget ?? {})
-        .map(([kind, value]) => `${count(value, plain)} ${kind === "time" ? "s" : kind}`)
-        .join(" or ");
+    const budget = budgetText(experiment.budget);
     const replicates = [...new Set(cells.map((cell) => cell.replicates).filter(isNumber))];
     const plural = (n, word) => `${n} ${word}${n === 1 ? "" : "s"}`;
     const film = experiment.film;
@@ -27,6 +25,7 @@ function render() {
     const name = summary.name ?? data.experiment?.name ?? "run";
     const sections = [
         verdictSection(),
+        tuningSection(),
         sweepSection(),
         cellsSection(),
         convergenceSection(),

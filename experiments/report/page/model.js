@@ -15,6 +15,11 @@ const kMetricNames = {
     ssim: "SSIM",
     flip: "FLIP",
 };
+/// In words: "2 s or 1 M rays".
+const budgetText = (budget) =>
+    Object.entries(budget ?? {})
+        .map(([kind, value]) => `${count(value, plain)} ${kind === "time" ? "s" : kind}`)
+        .join(" or ");
 const metricName = (metric) => kMetricNames[metric] ?? metric;
 
 /// The numbers of a feature called "hole_ROW_COL".

@@ -115,6 +115,15 @@ function testColour(byte) {
     return diverging(test.bright ? size : -size);
 }
 
+/// R-hat, from its byte; null where nothing varies.
+const rhatOf = (byte) => (byte === 0 ? null : 2 ** ((byte - 1) / 64 - 1));
+const rhatColour = (byte) =>
+    byte === 0 ? kNotJudged : kErrorPalette[Math.round(255 * clamp(Math.log2(rhatOf(byte)) / 2, 0, 1))];
+
+/// Share of accepted proposals, from its byte; null where no state was.
+const acceptanceOf = (byte) => (byte === 0 ? null : (byte - 1) / 254);
+const acceptanceColour = (byte) => (byte === 0 ? kNotJudged : kErrorPalette[byte]);
+
 const kToneCurve = Uint8Array.from({ length: 4096 }, (_, i) => linearToByte(i / 4095));
 const kErrorPalette = palette(magma);
 const pictureCache = new Map();

@@ -37,6 +37,26 @@ const kShows = [
         },
         meaning:
             "Is the mean over runs the reference? Welch’s test corrected for skewness, at a false discovery rate of 5 %. Grey: not judged, the runs scatter too much or not at all.",
+        note: testsNote,
+    },
+    {
+        id: "rhat",
+        key: "m",
+        name: "R̂",
+        map: (ids) => blockMap(ids.rhat, rhatColour),
+        scale: { map: magma, labels: ["1", "2", "≥ 4"], title: "R̂ of the pixels of a block" },
+        meaning:
+            "Do runs of chains differ more than the two halves of one run do? Near 1 they mix; where each run stays with what it found first, R̂ is large. Grey: nothing varies.",
+        note: rhatNote,
+    },
+    {
+        id: "acceptance",
+        key: "a",
+        name: "acceptance",
+        map: (ids) => blockMap(ids.acceptance, acceptanceColour),
+        scale: { map: magma, labels: ["0 %", "50 %", "100 %"], title: "proposals accepted" },
+        meaning:
+            "Share of the proposals that chains in a pixel accepted, over all runs and mutations. Dark: chains stay there. Grey: no chain was there.",
     },
 ];
 const showOf = (id) => kShows.find((show) => show.id === id);
@@ -54,14 +74,29 @@ function testsNote(cell) {
     return tests.length ? `${wrong} of ${tests.length} ${size} differ` : "nothing can be judged";
 }
 
+const kMixedRhat = 1.2; // what the noise of eight runs leaves behind it only rarely
+
+/// In how much of a cell's picture runs have not mixed, in words.
+function rhatNote(cell) {
+    const map = showOf("rhat").map(pictureIds(cell));
+    if (!map) return "";
+    const judged = [...map.bytes].map(rhatOf).filter((rhat) => rhat !== null),
+        apart = judged.filter((rhat) => rhat > kMixedRhat).length;
+    return judged.length ? `R̂ above ${kMixedRhat} in ${percent(apart / judged.length)} of it` : "nothing varies";
+}
+
 /// What the runs of a cell say of a place of its picture, in words.
 function placeNote(cell, u, v) {
     const ids = pictureIds(cell),
         deviation = showOf("deviation").map(ids)?.at(u, v),
-        test = testOf(showOf("tests").map(ids)?.at(u, v) ?? 0);
+        test = testOf(showOf("tests").map(ids)?.at(u, v) ?? 0),
+        rhat = rhatOf(showOf("rhat").map(ids)?.at(u, v) ?? 0),
+        acceptance = acceptanceOf(showOf("acceptance").map(ids)?.at(u, v) ?? 0);
     return [
         isNumber(deviation) && ` · spread over runs ${percent(deviationOf(deviation))}`,
         test && ` · p = ${pValue(test.p)}${test.p <= 0.05 ? `, too ${test.bright ? "bright" : "dark"}` : ""}`,
+        rhat !== null && ` · R̂ ${number(rhat)}`,
+        acceptance !== null && ` · acceptance ${percent(acceptance)}`,
     ]
         .filter(Boolean)
         .join("");

@@ -432,8 +432,8 @@ class Viewer {
             tile.crops.forEach((crop, k) =>
                 this.paint(crop, { zoom: 1 / this.insets[k].size, ...this.insets[k] }, tile.entry),
             );
-            const tested = state.show === "tests" && tile.entry.kind === "mean" && testsNote(tile.entry.cell);
-            tile.label.querySelector(".tile-note").textContent = tested || (tile.entry.note ?? "");
+            const found = tile.entry.kind === "mean" && showOf(state.show).note?.(tile.entry.cell);
+            tile.label.querySelector(".tile-note").textContent = found || (tile.entry.note ?? "");
             tile.label.setAttribute("aria-pressed", i === state.shown);
         });
         const size = this.imageSize(this.stage.clientWidth, this.stage.clientHeight);

@@ -89,6 +89,7 @@ std::vector<Job> jobs() {
         all.push_back({sampler, spp});
     }
     all.push_back({{{"type", "bdpt"}, {"max_depth", 4}, {"technique_images", true}}, spp});
+    all.push_back({{{"type", "mlt"}, {"max_depth", 4}, {"chains", 37}, {"bootstrap", 5000}, {"acceptance_images", true}}, spp});
     Budget oneRound;
     oneRound.rays = 1;  // spent at once; the round is finished all the same
     all.push_back({{{"type", "path"}, {"max_depth", 5}}, oneRound});

@@ -70,6 +70,7 @@ public:
                    {"primary_metric", "relmse"},
                    {"cells", cells},
                    {"comparisons", comparisons},
+                   {"tuning", tuning()},
                    {"verdicts", verdicts},
                    {"warnings", {"mlt on hidden: log errors are heavy-tailed, intervals may cover less than 95 %."}}});
         writeJson("experiment.json", {{"name", "backlit_grid_of_holes"},
@@ -152,6 +153,13 @@ private:
             const Image image = picture(spot, brightness, sampler.pixelNoise);
             errors.push_back(relmse(image, reference));
             writeImage(fmt::format("cells/{}/r{:03}/image.exr", cell, r), image);
+            if (!sampler.chains) continue;
+            // After the first half: of mlt, whose chains stay, the same holes; of others, other ones.
+            std::swap(random_, randomOfHalves_);
+            if (sampler.name != "mlt")
+                for (double& b : brightness) b = std::exp(sampler.holeSpread * normal());
+            writeImage(fmt::format("cells/{}/r{:03}/snapshots/s00.exr", cell, r), picture(spot, brightness, sampler.pixelNoise));
+            std::swap(random_, randomOfHalves_);
         }
         for (std::size_t r = 0; r < runs; ++r) writeReplicate(fmt::format("cells/{}/r{:03}", cell, r), scene, sampler, reference);
         std::vector<double> sorted = errors;
@@ -244,6 +252,21 @@ private:
         return json;
     }
 
+    /// Four candidates, of which two had a second round, and the last was best.
+    static Json tuning() {
+        Json candidates = Json::array();
+        for (const int chains : {10, 100, 1000, 10000})
+            candidates.push_back({{"values", {{"samplers.mlt.chains", chains}, {"samplers.mlt.target", "max"}}},
+                                  {"scores", Json::array({-1 - std::log10(chains)})}});
+        for (const std::size_t kept : {2u, 3u}) candidates[kept]["scores"].push_back(kept == 3 ? -7 : -6);
+        const Json first = {{"candidates", 4}, {"budget", {{"time", 1}}}, {"replicates", 4}, {"kept", {3, 2}}};
+        const Json second = {{"candidates", 2}, {"budget", {{"time", 2}}}, {"replicates", 4}, {"kept", Json::array({3})}};
+        return {{"sampler", "mlt"},
+                {"candidates", candidates},
+                {"rounds", {first, second}},
+                {"winner", candidates[3]["values"]}};
+    }
+
     /// What a replicate leaves beside its image: of bdpt the images of its techniques, of others their chains.
     void writeReplicate(const std::string& folder, const std::string& scene, const FakeSampler& sampler,
                         const Image& reference) {
@@ -261,9 +284,16 @@ private:
             const Json scalars = {"raster_x", "raster_y", "log_target", "path_length", "feature"};
             result.update({{"chains", 100},
                            {"mutations", 2.4e6},
+                           {"normalization", 0.5},
+                           {"snapshots", Json::array({{{"mutations", 1.2e6}, {"image", "snapshots/s00.exr"}}})},
                            {"mixing", {{"draws_per_chain", kDraws}, {"feature", {{"split_rhat", 4.2}, {"ess", 51.0}}}}},
                            {"traces", {{"file", "chains.npy"}, {"chains", kChains}, {"draws", kDraws}, {"scalars", scalars}}}});
             writeBytes(folder + "/chains.npy", chains(sampler));
+            Image proposed(size_, size_, Rgb(100)), accepted(size_, size_);
+            for (int y = 0; y < size_; ++y)
+                for (int x = 0; x < size_; ++x) accepted.at(x, y) = Rgb(float(100 * x / size_));
+            writeImage(folder + "/extra/proposed.exr", proposed);
+            writeImage(folder + "/extra/accepted.exr", accepted);
         } else {
             for (const auto& [s, t] : kTechniques)
                 for (const char* kind : {"weighted", "unweighted"}) {
@@ -353,6 +383,7 @@ private:
     std::filesystem::path folder_;
     int size_, holes_, replicates_;
     std::mt19937 random_{1};
+    std::mt19937 randomOfHalves_{7};
 };
 
 }  // namespace ulam::tests

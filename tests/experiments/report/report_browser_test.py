@@ -123,6 +123,30 @@ def shows_maps_over_runs(browser):
     check(browser.pixels(STAGE) == plain, "key p does not toggle back")
 
 
+def shows_maps_of_chains(browser):
+    """R-hat and acceptance, of samplers with chains only."""
+    notes = "return [...document.querySelectorAll(`${arguments[0]} .tile-note`)].map((n) => n.textContent)"
+    browser.press("3")
+    plain = browser.pixels(STAGE)
+    seen = {plain}
+    for key, words in (("m", "R̂ of the pixels of a block"), ("a", "proposals accepted")):
+        browser.press(key)
+        seen.add(browser.pixels(STAGE))
+        legend = browser.run("return document.querySelector(`${arguments[0]} .error-legend`).textContent", VIEWER)
+        check(words in legend, f"after key {key} the legend says '{legend}'")
+    check(len(seen) == 3, "keys m and a show the same")
+    browser.press("m")
+    apart = [note for note in browser.run(notes, VIEWER) if re.match(r"R̂ above 1.2 in [\d.]+ % of it", note)]
+    check(len(apart) == 2, f"two samplers have chains, but {apart}")
+    browser.drag(STAGE, 5, 5, grip=(30, 300))
+    readout = browser.run("return document.querySelector(`${arguments[0]} .readout`).textContent", VIEWER)
+    check("R̂" in readout and "acceptance" in readout, f"the readout says '{readout}'")
+    browser.press("2")
+    coloured = browser.pixels(STAGE)
+    browser.press("m")
+    check(browser.pixels(STAGE) == coloured, "a sampler without chains has a map of them")
+
+
 def splits_the_stage(browser):
     """Left of the divider the chosen picture, right of it the shown one; moved by arrow keys and by dragging."""
     halves = """const canvas = document.querySelector(arguments[0]), width = Math.floor(0.4 * canvas.width);
@@ -240,6 +264,19 @@ def saves_every_figure(browser):
         width = float(root.get("width").removesuffix("mm"))
         check(30 < width <= 181, f"{name}: {width} mm wide")
         check(root.findall(".//{http://www.w3.org/2000/svg}text"), f"{name}: no text")
+
+
+def tells_how_it_was_tuned(browser):
+    """The best candidates first, with what they had in each round."""
+    rows = browser.run(
+        """return [...document.querySelectorAll('#tuning-table tbody tr')].map((tr) =>
+            [tr.classList.contains('winner'), [...tr.children].map((cell) => cell.textContent)])"""
+    )
+    check([winner for winner, _ in rows] == [True, False, False, False], f"the winner is not first: {rows}")
+    check([cells[1] for _, cells in rows] == ['"max"'] * 4, f"parameters: {rows}")
+    check([cells[3] == "–" for _, cells in rows] == [False, False, True, True], f"rounds: {rows}")
+    head = browser.run("return document.querySelector('#tuning-table thead').textContent")
+    check("chains" in head and "1 s" in head and "2 s" in head, f"the head says '{head}'")
 
 
 def sorts_the_table(browser):
@@ -413,11 +450,13 @@ def test_page(page):
         exposure_changes_all,
         toggles_false_colour,
         shows_maps_over_runs,
+        shows_maps_of_chains,
         splits_the_stage,
         shows_the_worst_run,
         zooms_and_pans_together,
         moves_crops,
         saves_every_figure,
+        tells_how_it_was_tuned,
         sorts_the_table,
         draws_hole_maps,
         chooses_the_caught_sampler,
