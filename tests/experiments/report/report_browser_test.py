@@ -136,7 +136,7 @@ def shows_maps_of_chains(browser):
         check(words in legend, f"after key {key} the legend says '{legend}'")
     check(len(seen) == 3, "keys m and a show the same")
     browser.press("m")
-    apart = [note for note in browser.run(notes, VIEWER) if re.match(r"R̂ above 1.2 in [\d.]+ % of it", note)]
+    apart = [note for note in browser.run(notes, VIEWER) if re.match(r"R̂ above 1\.2 in [\d.]+\s?% of it", note)]
     check(len(apart) == 2, f"two samplers have chains, but {apart}")
     browser.drag(STAGE, 5, 5, grip=(30, 300))
     readout = browser.run("return document.querySelector(`${arguments[0]} .readout`).textContent", VIEWER)
