@@ -6,7 +6,7 @@ function tuningSection() {
     const { sampler, candidates, rounds, winner } = tuning;
     const names = Object.keys(candidates[0].values),
         same = (values) => JSON.stringify(values) === JSON.stringify(winner),
-        said = (value) => (isNumber(value) ? number(value) : JSON.stringify(value));
+        said = (value) => (isNumber(value) ? plain(value) : JSON.stringify(value));
     const last = (candidate) => candidate.scores.length;
     const sorted = [...candidates].sort((a, b) => last(b) - last(a) || a.scores.at(-1) - b.scores.at(-1));
     const row = ({ values, scores }) =>
