@@ -29,7 +29,7 @@ void configureLibrary() {
     static const bool done = [] {
         OIIO::attribute("debug", 0);
         OIIO::attribute("threads", 1);
-        OIIO::attribute("exr_threads", 1);
+        OIIO::attribute("exr_threads", -1);
         OIIO::attribute("try_all_readers", 0);
         OIIO::attribute("limits:channels", 64);
         OIIO::attribute("limits:imagesize_MB", static_cast<int>(kMaxImagePixels * 4 * sizeof(float) >> 20));
@@ -204,7 +204,7 @@ void writeExr(const std::string& path, const Image& image, const ImageAttributes
     requirePixels(path, image, half ? kMaxHalf : std::numeric_limits<float>::max());
     OIIO::ImageSpec spec(image.width, image.height, 3, half ? OIIO::TypeDesc::HALF : OIIO::TypeDesc::FLOAT);
     for (const auto& [name, value] : attributes) spec[name] = value;
-    spec["compression"] = "zip";
+    spec["compression"] = "rle";  // of noise zip saves 1 % more, for six times the time; black pixels take next to nothing in both
     spec["DateTime"] = 0;  // else the library writes the time of day; a number is not written
     writeFileAtomically(path, encode("exr", path, spec, OIIO::TypeDesc::FLOAT, image.pixels.data()));
 }
