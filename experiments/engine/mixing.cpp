@@ -1,8 +1,10 @@
 #include "experiments/engine/mixing.h"
 
 #include <algorithm>
+#include <array>
 
 #include "core/config/json_number.h"
+#include "core/render/parallel.h"
 #include "experiments/statistics/chains.h"
 
 namespace ulam {
@@ -27,30 +29,42 @@ bool isConstant(const std::vector<statistics::Trace>& values) {
     });
 }
 
+using Draws = std::vector<std::vector<ChainTrace::Draw>>;  ///< by chain
+
+Json mixingOf(size_t scalar, const Draws& draws, double seconds) {
+    std::vector<statistics::Trace> values;
+    for (const auto& chain : draws) {
+        values.emplace_back();
+        for (const ChainTrace::Draw& draw : chain) values.back().push_back(double(draw[scalar]));
+    }
+    if (isConstant(values)) return {};  // such as the path length of states that are whole samples
+    const double size = statistics::effectiveSampleSize(values);
+    const size_t chains = values.size() / kChainsPerSuperchain * kChainsPerSuperchain;
+    return {{"split_rhat", numberOrNull(statistics::splitRhat(values))},
+            {"ess", numberOrNull(size)},
+            {"ess_per_second", numberOrNull(size / seconds)},
+            {"nested_rhat", chains < 2 * kChainsPerSuperchain
+                                ? Json()
+                                : numberOrNull(statistics::nestedRhat(std::span(values).first(chains), kChainsPerSuperchain))}};
+}
+
 }  // namespace
 
-Json mixing(const std::vector<ChainTrace>& traces, double seconds) {
+Json mixing(const std::vector<ChainTrace>& traces, double seconds, int threads) {
     std::vector<const ChainTrace*> sorted;
     for (const ChainTrace& t : traces) sorted.push_back(&t);
     std::stable_sort(sorted.begin(), sorted.end(),
                      [](const ChainTrace* a, const ChainTrace* b) { return zOrder(a->origin()) < zOrder(b->origin()); });
-    const auto draws = drawsAtSameTurns(sorted);
+    const Draws draws = drawsAtSameTurns(sorted);
     const size_t length = draws.empty() ? 0 : draws[0].size();
     if (length < kShortestTrace) return nullptr;
-    const size_t chains = traces.size() / kChainsPerSuperchain * kChainsPerSuperchain;
+    std::array<Json, ChainTrace::kScalars> found;
+    forEachChunk(threads, 0, found.size(), 1, [](int) { return false; },
+                 [&](int, uint64_t scalar, uint64_t) { found[scalar] = mixingOf(scalar, draws, seconds); });
     Json out = Json::object();
     out["draws_per_chain"] = length;
-    for (int scalar = 0; scalar < ChainTrace::kScalars; ++scalar) {
-        std::vector<statistics::Trace> values(traces.size(), statistics::Trace(length));
-        for (size_t c = 0; c < traces.size(); ++c)
-            for (size_t i = 0; i < length; ++i) values[c][i] = double(draws[c][i][size_t(scalar)]);
-        if (isConstant(values)) continue;  // such as the path length of states that are whole samples
-        const double size = statistics::effectiveSampleSize(values);
-        Json entry = {{"split_rhat", numberOrNull(statistics::splitRhat(values))}, {"ess", numberOrNull(size)}, {"ess_per_second", numberOrNull(size / seconds)}};
-        entry["nested_rhat"] =
-            chains < 2 * kChainsPerSuperchain ? Json() : numberOrNull(statistics::nestedRhat(std::span(values).first(chains), kChainsPerSuperchain));
-        out[ChainTrace::kNames[scalar]] = entry;
-    }
+    for (size_t scalar = 0; scalar < found.size(); ++scalar)
+        if (!found[scalar].is_null()) out[ChainTrace::kNames[scalar]] = std::move(found[scalar]);
     return out;
 }
 

@@ -7,6 +7,6 @@
 namespace ulam {
 
 /// By scalar: nested and split R-hat, effective sample size and its rate. Null where the traces are too short.
-Json mixing(const std::vector<ChainTrace>& traces, double seconds);
+Json mixing(const std::vector<ChainTrace>& traces, double seconds, int threads);
 
 }  // namespace ulam

@@ -114,7 +114,7 @@ Json resultJson(const RunIdentity& run, const RenderResult& result, const Featur
         {"bias_ledger", s.biasLedger},
         {"diagnostics", s.diagnostics},
         {"repeat", repeat},
-        {"mixing", mixing(s.traces, result.wallSeconds)},
+        {"mixing", mixing(s.traces, result.wallSeconds, run.threads)},
         {"snapshots", snapshots},
         {"width", result.image.width},
         {"height", result.image.height},

@@ -116,12 +116,14 @@ private:
     std::vector<double> lower_;  ///< of the lower half; the upper one is its mirror image
 };
 
-/// Normal scores of the ranks over all chains together.
-std::vector<Trace> rankNormalised(std::vector<Trace> chains, const NormalScores& scores) {
-    struct Draw {
-        double value;
-        double* place;
-    };
+/// A value and the place in a chain that has it.
+struct Draw {
+    double value;
+    double* place;
+};
+
+/// The draws of all chains together, by size.
+std::vector<Draw> sortedDraws(std::vector<Trace>& chains) {
     std::vector<Draw> order;
     order.reserve(chains.size() * chains.front().size());
     for (Trace& chain : chains) {
@@ -130,24 +132,29 @@ std::vector<Trace> rankNormalised(std::vector<Trace> chains, const NormalScores&
     const auto bits = [](const Draw& draw, unsigned shift) { return std::bit_cast<std::int64_t>(draw.value) >> shift; };
     boost::sort::spreadsort::float_sort(order.begin(), order.end(), bits,
                                         [](const Draw& a, const Draw& b) { return a.value < b.value; });
+    return order;
+}
+
+/// Distances from the median, by size: sees chains that differ in spread only.
+std::vector<Draw> folded(std::vector<Draw> order) {
+    const std::size_t n = order.size();
+    const double median = (order[(n - 1) / 2].value + order[n / 2].value) / 2;
+    for (Draw& draw : order) draw.value = std::abs(draw.value - median);
+    // What lies below the median is in falling order now, the rest in rising order.
+    std::vector<Draw> below(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(n / 2)), merged(n);
+    std::ranges::reverse(below);
+    std::ranges::merge(below, std::span(order).subspan(n / 2), merged.begin(), {}, &Draw::value, &Draw::value);
+    return merged;
+}
+
+/// Writes the normal score of its rank to each draw's place.
+void rankNormalise(const std::vector<Draw>& order, const NormalScores& scores) {
     for (std::size_t first = 0; first < order.size();) {
         std::size_t last = first;
         while (last < order.size() && order[last].value == order[first].value) ++last;
         const double score = scores(first, last);
         for (; first < last; ++first) *order[first].place = score;
     }
-    return chains;
-}
-
-/// Distances from the median over all chains together: sees chains that differ in spread only.
-std::vector<Trace> folded(std::vector<Trace> chains) {
-    std::vector<double> all;
-    for (const Trace& chain : chains) all.insert(all.end(), chain.begin(), chain.end());
-    const double median = quantile(all, 0.5);
-    for (Trace& chain : chains) {
-        for (double& x : chain) x = std::abs(x - median);
-    }
-    return chains;
 }
 
 /// √(base + B / W) with the degenerate cases in place.
@@ -185,9 +192,13 @@ double effectiveSampleSize(std::span<const Trace> chains) {
 
 double splitRhat(std::span<const Trace> chains) {
     requireTraces(chains, 4);
-    const std::vector<Trace> halves = splitInHalves(chains);
-    const NormalScores scores(halves.size() * halves.front().size());
-    return std::max(classicalRhat(rankNormalised(halves, scores)), classicalRhat(rankNormalised(folded(halves), scores)));
+    std::vector<Trace> halves = splitInHalves(chains);
+    const std::vector<Draw> order = sortedDraws(halves);
+    const NormalScores scores(order.size());
+    rankNormalise(order, scores);
+    const double bulk = classicalRhat(halves);
+    rankNormalise(folded(order), scores);
+    return std::max(bulk, classicalRhat(halves));
 }
 
 double nestedRhat(std::span<const Trace> chains, std::size_t chainsPerSuperchain) {

@@ -167,7 +167,7 @@ Finding reportMixing(const MutationCase& c, References& references) {
                             {"chains", chains},
                             {"steps_per_chain", c.work().mixingSteps},
                             {"coverage_of_lit_tiles", coverage(result.image, references(*place.scene))}};
-            Json scalars = mixing(result.statistics.traces, result.cpuSeconds);
+            Json scalars = mixing(result.statistics.traces, result.cpuSeconds, c.settings.threads);
             std::string slowest;
             double longest = 0;
             for (auto& [name, scalar] : scalars.items()) {
