@@ -204,7 +204,7 @@ void writeExr(const std::string& path, const Image& image, const ImageAttributes
     requirePixels(path, image, half ? kMaxHalf : std::numeric_limits<float>::max());
     OIIO::ImageSpec spec(image.width, image.height, 3, half ? OIIO::TypeDesc::HALF : OIIO::TypeDesc::FLOAT);
     for (const auto& [name, value] : attributes) spec[name] = value;
-    spec["compression"] = "rle";  // of noise zip saves 1 % more, for six times the time; black pixels take next to nothing in both
+    spec["compression"] = "rle";  // of noise zip saves 1 % more, for five times the time; black pixels take next to nothing in both
     spec["DateTime"] = 0;  // else the library writes the time of day; a number is not written
     writeFileAtomically(path, encode("exr", path, spec, OIIO::TypeDesc::FLOAT, image.pixels.data()));
 }
