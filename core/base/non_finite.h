@@ -13,7 +13,7 @@ enum class Cause : uint8_t {
     None,
     Geometry,      ///< a position or normal
     Texture,
-    Bsdf,          ///< a value, density, direction or albedo
+    BsdfValue,     ///< or a BSDF's density, direction or albedo
     Light,         ///< a radiance or density of an emitter
     Sensor,        ///< an importance or density of the camera
     Target,        ///< π

@@ -15,7 +15,7 @@ inline double shadingCorrection(const Vertex& v, const Vec3f& toLight) {
 
 /// None where a factor is not finite.
 inline Scattering checked(const Scattering& s) {
-    return checkFinite(Cause::Bsdf, s.f.x + s.f.y + s.f.z + s.pdfToCamera + s.pdfToLight) ? s : Scattering::none();
+    return checkFinite(Cause::BsdfValue, s.f.x + s.f.y + s.f.z + s.pdfToCamera + s.pdfToLight) ? s : Scattering::none();
 }
 
 }  // namespace
@@ -41,7 +41,7 @@ bool sampleScattering(const Scene& scene, Vertex& v, const Vec3f& from, From wal
         const auto& c = walk == From::Light ? dt : dk;
         const Spectrum f = bsdf.eval(l, c, v.lobe);
         out.direction = frame.toWorld(sampled->to);
-        if (!checkFinite(Cause::Bsdf, out.direction.x + out.direction.y + out.direction.z) || isBlack(f)) return false;
+        if (!checkFinite(Cause::BsdfValue, out.direction.x + out.direction.y + out.direction.z) || isBlack(f)) return false;
         const Vec3f& toLight = walk == From::Light ? from : out.direction;
         out.scattering = checked({f * shadingCorrection(v, toLight), bsdf.pdf(l, c, v.lobe), bsdf.pdf(c, l, v.lobe)});
         return !isBlack(out.scattering.f);
@@ -69,7 +69,7 @@ double albedoAt(const Scene& scene, const Vertex& v) {
     const Material& m = scene.materialAt(v);
     const auto albedo = [&](const Coating& coating) {
         const double value = withCoating(scene, v, coating, [](const auto& bsdf) { return bsdf.albedo(); });
-        return checkFinite(Cause::Bsdf, value) ? value : 0;
+        return checkFinite(Cause::BsdfValue, value) ? value : 0;
     };
     return m.back ? std::max(albedo(m.front), albedo(*m.back)) : albedo(m.front);
 }
