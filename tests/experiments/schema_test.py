@@ -14,9 +14,9 @@ import unittest
 from concurrent.futures import ThreadPoolExecutor
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
-PYTHON = ROOT / "build/python/bin/python"  # tests/run makes it
-if PYTHON.exists() and pathlib.Path(sys.prefix) != PYTHON.parent.parent:
-    os.execv(PYTHON, [str(PYTHON), *sys.argv])
+sys.path.append(str(ROOT / "tests/support"))
+import packages  # noqa: E402, F401
+
 try:
     import jsonschema
 except ImportError:

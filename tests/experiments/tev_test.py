@@ -8,11 +8,14 @@ import re
 import socket
 import struct
 import subprocess
+import sys
 import tempfile
 import threading
 import time
 import unittest
-import zlib
+
+sys.path.append(str(pathlib.Path(__file__).resolve().parent.parent / "support"))
+from exr import read_exr
 
 ULAM = os.path.abspath(os.environ.get("ULAM", "build/release/ulam"))
 
@@ -127,49 +130,6 @@ class Viewer:
         self.socket.close()
         self.thread.join(10)
         assert not self.errors, self.errors
-
-
-def read_exr(path):
-    """Rows of (R, G, B) of an EXR of scan lines and floats, without compression or with zlib's."""
-    data = path.read_bytes()
-    assert data[:4] == b"\x76\x2f\x31\x01"
-    at, header = 8, {}
-    while data[at]:
-        name, kind = data[at:].split(b"\0", 2)[:2]
-        at += len(name) + len(kind) + 2
-        (size,) = struct.unpack_from("<i", data, at)
-        header[name.decode()] = data[at + 4 : at + 4 + size]
-        at += 4 + size
-    at += 1
-    channels, rest = [], header["channels"]
-    while rest[0]:
-        name, rest = rest.split(b"\0", 1)
-        assert struct.unpack_from("<i", rest)[0] == 2, "not floats"
-        channels.append(name.decode())
-        rest = rest[16:]
-    x0, y0, x1, y1 = struct.unpack("<4i", header["dataWindow"])
-    width, height = x1 - x0 + 1, y1 - y0 + 1
-    lines = {0: 1, 2: 1, 3: 16}[header["compression"][0]]
-    rows = []
-    for block in range(-(-height // lines)):
-        (start,) = struct.unpack_from("<Q", data, at + 8 * block)
-        _, size = struct.unpack_from("<ii", data, start)
-        packed = data[start + 8 : start + 8 + size]
-        count = min(lines, height - block * lines)
-        whole = 4 * width * len(channels) * count
-        if size < whole:
-            mixed = bytearray(zlib.decompress(packed))
-            for i in range(1, len(mixed)):
-                mixed[i] = (mixed[i - 1] + mixed[i] - 128) & 255
-            half = (len(mixed) + 1) // 2
-            packed = bytearray(len(mixed))
-            packed[0::2], packed[1::2] = mixed[:half], mixed[half:]
-        for row in range(count):
-            planes = {}
-            for i, channel in enumerate(channels):
-                planes[channel] = struct.unpack_from(f"<{width}f", packed, 4 * width * (row * len(channels) + i))
-            rows.append(list(zip(planes["R"], planes["G"], planes["B"])))
-    return rows
 
 
 class TevTest(unittest.TestCase):

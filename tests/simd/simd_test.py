@@ -6,11 +6,13 @@ import math
 import os
 import pathlib
 import statistics
-import struct
 import subprocess
+import sys
 import tempfile
 import unittest
-import zlib
+
+sys.path.append(str(pathlib.Path(__file__).resolve().parent.parent / "support"))
+from exr import read_exr
 
 ULAM = os.path.abspath(os.environ.get("ULAM", "build/release/ulam"))
 HERE = pathlib.Path(__file__).resolve().parent
@@ -24,34 +26,6 @@ def processor_flags():
         if line.startswith("flags"):
             return line.split()
     return []
-
-
-def read_exr(file):
-    """The floats of an EXR of scan lines, uncompressed or zipped, line by line, channel after channel."""
-    data = file.read_bytes()
-    at, attributes = 8, {}
-    while data[at]:
-        name_end = data.index(0, at)
-        type_end = data.index(0, name_end + 1)
-        size, = struct.unpack_from("<i", data, type_end + 1)
-        attributes[data[at:name_end].decode()] = data[type_end + 5:type_end + 5 + size]
-        at = type_end + 5 + size
-    at += 1
-    lines = {0: 1, 2: 1, 3: 16}[attributes["compression"][0]]
-    chunks = -(-SIZE // lines)
-    values = []
-    for offset in struct.unpack_from(f"<{chunks}Q", data, at):
-        _, size = struct.unpack_from("<ii", data, offset)
-        chunk = data[offset + 8:offset + 8 + size]
-        if size < min(lines, SIZE) * SIZE * 12:
-            delta = bytearray(zlib.decompress(chunk))
-            for i in range(1, len(delta)):
-                delta[i] = (delta[i - 1] + delta[i] - 128) & 255
-            half = (len(delta) + 1) // 2
-            chunk = bytearray(len(delta))
-            chunk[0::2], chunk[1::2] = delta[:half], delta[half:]
-        values += struct.unpack(f"<{len(chunk) // 4}f", chunk)
-    return values
 
 
 class Simd(unittest.TestCase):
@@ -73,7 +47,7 @@ class Simd(unittest.TestCase):
         subprocess.run([ULAM, "render", scene, "--sampler", sampler, "--threads", "1", "--quiet", "-o", output,
                         "--set", f"scene.film.width={SIZE}", "--set", f"scene.film.height={SIZE}", *map(str, arguments)],
                        check=True, env=environment)
-        return read_exr(output)
+        return [value for row in read_exr(output) for pixel in row for value in pixel]
 
     def test_independent_samples_differ_by_rounding_but_in_a_few_pixels(self):
         first, *others = self.instructions
