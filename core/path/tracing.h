@@ -52,12 +52,15 @@ public:
         return true;
     }
 
-    /// V(a↔b). Asked in the order light, camera, so that the answer is a function of the pair.
+    /// V(a↔b). Asked in the order light, camera, so that the answer is a function of the pair. The ray starts where
+    /// coordinates are smaller: its direction is rounded as the larger ones are, and what is close to its start is met
+    /// as surely as from a camera there, what is close to its end is not.
     bool visible(const Vertex& a, const Vertex& b) {
         ++rays_;
         if (a.atInfinity()) return !scene_->rays().occludedToInfinity(rayOrigin(b, a.position), a.position);
         const Vec3f d = b.position - a.position;
-        const Vec3f from = rayOrigin(a, d), to = rayOrigin(b, -d);
+        Vec3f from = rayOrigin(a, d), to = rayOrigin(b, -d);
+        if (to.dot(to) < from.dot(from)) std::swap(from, to);
         return !scene_->rays().occluded(from, to - from);
     }
 
