@@ -1,24 +1,27 @@
 #pragma once
 // What a call complains about.
 
+#include <concepts>
 #include <string>
-#include <utility>
 
 #include "core/base/error.h"
 
 namespace ulam {
 
+inline bool mentions(const std::string& message, const std::string& part) {
+    return message.find(part) != std::string::npos;
+}
+
 struct Complaint {
     ExitCode code = ExitCode::Done;
     std::string message;  // empty: no complaint
 
-    bool has(const std::string& part) const { return message.find(part) != std::string::npos; }
+    bool has(const std::string& part) const { return mentions(message, part); }
 };
 
-template <class Call>
-Complaint errorOf(Call&& call) {
+Complaint errorOf(std::invocable auto&& call) {
     try {
-        std::forward<Call>(call)();
+        call();
     } catch (const Error& error) {
         return {error.code(), error.what()};
     }

@@ -7,6 +7,7 @@
 
 #include "core/base/error.h"
 #include "tests/support/catch.h"
+#include "tests/support/error_of.h"
 
 using namespace ulam;
 namespace fs = std::filesystem;
@@ -24,16 +25,6 @@ struct Folder {
     fs::path path;
 };
 
-template <class Call>
-std::pair<ExitCode, std::string> errorOf(Call call) {
-    try {
-        call();
-    } catch (const Error& error) {
-        return {error.code(), error.what()};
-    }
-    return {ExitCode::Done, ""};
-}
-
 }  // namespace
 
 TEST_CASE("what is written is read", "[file]") {
@@ -50,25 +41,25 @@ TEST_CASE("what is written is read", "[file]") {
 
 TEST_CASE("what cannot be read is an input that is missing", "[file]") {
     const Folder folder;
-    CHECK(errorOf([&] { readFile(folder.path / "none"); }).first == ExitCode::InputMissing);
-    CHECK(errorOf([&] { readFile(folder.path); }).first == ExitCode::InputMissing);
+    CHECK(errorOf([&] { readFile(folder.path / "none"); }).code == ExitCode::InputMissing);
+    CHECK(errorOf([&] { readFile(folder.path); }).code == ExitCode::InputMissing);
     writeFileAtomically(folder.path / "five", "12345");
     CHECK(readFile(folder.path / "five", 5) == "12345");
-    CHECK(errorOf([&] { readFile(folder.path / "five", 4); }).first == ExitCode::InvalidConfig);
-    CHECK(errorOf([&] { readFile("/dev/zero", 1000); }).first == ExitCode::InvalidConfig);
+    CHECK(errorOf([&] { readFile(folder.path / "five", 4); }).code == ExitCode::InvalidConfig);
+    CHECK(errorOf([&] { readFile("/dev/zero", 1000); }).code == ExitCode::InvalidConfig);
 }
 
 TEST_CASE("what cannot be written says so and leaves nothing behind", "[file]") {
     const Folder folder;
     writeFileAtomically(folder.path / "file", "kept");
     const auto below = errorOf([&] { writeFileAtomically(folder.path / "file" / "below", "x"); });
-    CHECK(below.first == ExitCode::CannotWrite);
-    CHECK(below.second.find("Not a directory") != std::string::npos);
+    CHECK(below.code == ExitCode::CannotWrite);
+    CHECK(below.message.find("Not a directory") != std::string::npos);
     const auto missing = errorOf([&] { writeFileAtomically(folder.path / "none" / "a", "x"); });
-    CHECK(missing.first == ExitCode::CannotWrite);
-    CHECK(missing.second.find("No such file or directory") != std::string::npos);
-    CHECK(errorOf([&] { writeFileAtomically(folder.path, "x"); }).first == ExitCode::CannotWrite);
-    CHECK(errorOf([&] { writeFileAtomically(folder.path / std::string(300, 'n'), "x"); }).first ==
+    CHECK(missing.code == ExitCode::CannotWrite);
+    CHECK(missing.message.find("No such file or directory") != std::string::npos);
+    CHECK(errorOf([&] { writeFileAtomically(folder.path, "x"); }).code == ExitCode::CannotWrite);
+    CHECK(errorOf([&] { writeFileAtomically(folder.path / std::string(300, 'n'), "x"); }).code ==
           ExitCode::CannotWrite);
     CHECK(readFile(folder.path / "file") == "kept");
     CHECK(folder.count() == 1);
@@ -78,8 +69,8 @@ TEST_CASE("devices are written in place", "[file]") {
     writeFileAtomically("/dev/null", "x");
     CHECK(fs::is_character_file("/dev/null"));
     const auto full = errorOf([] { writeFileAtomically("/dev/full", "x"); });
-    CHECK(full.first == ExitCode::CannotWrite);
-    CHECK(full.second.find("No space left on device") != std::string::npos);
+    CHECK(full.code == ExitCode::CannotWrite);
+    CHECK(full.message.find("No space left on device") != std::string::npos);
     CHECK(fs::is_character_file("/dev/full"));
 }
 
@@ -93,7 +84,7 @@ TEST_CASE("a symbolic link stays one", "[file]") {
     CHECK(readFile(folder.path / "real" / "target") == "second");
 
     fs::create_symlink("loop", folder.path / "loop");
-    CHECK(errorOf([&] { writeFileAtomically(folder.path / "loop", "x"); }).first == ExitCode::CannotWrite);
+    CHECK(errorOf([&] { writeFileAtomically(folder.path / "loop", "x"); }).code == ExitCode::CannotWrite);
 }
 
 TEST_CASE("a name without a folder is written to the current one", "[file]") {
@@ -119,7 +110,7 @@ TEST_CASE("a disk that fills up leaves the old file and no temporary one", "[fil
     const auto error = errorOf([&] { writeFileAtomically(path, std::string(5000, 'x')); });
     ::setrlimit(RLIMIT_FSIZE, &before);
     std::signal(SIGXFSZ, handler);
-    CHECK(error.first == ExitCode::CannotWrite);
+    CHECK(error.code == ExitCode::CannotWrite);
     CHECK(readFile(path) == "old");
     CHECK(folder.count() == 1);
 }

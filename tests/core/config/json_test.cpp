@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "tests/core/config/error_of.h"
+#include "tests/support/error_of.h"
 #include "tests/support/catch.h"
 
 using namespace ulam;

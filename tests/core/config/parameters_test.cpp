@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "tests/core/config/error_of.h"
+#include "tests/support/error_of.h"
 #include "tests/support/catch.h"
 
 using namespace ulam;
@@ -45,7 +45,7 @@ Everything parse(const std::string& text) {
     return parseParameters<Everything>(JsonDocument::fromText(text, "a.json").root());
 }
 
-std::string refusal(const std::string& text) {
+std::string parameterRefusal(const std::string& text) {
     const auto complaint = errorOf([&] { parse(text); });
     CHECK(complaint.code == ExitCode::InvalidConfig);
     return complaint.message;
@@ -84,65 +84,65 @@ TEST_CASE("colours are numbers, triples or rgb objects", "[parameters]") {
     CHECK(parse(R"({"tint": [0.5, 0, 1]})").tint == Spectrum(0.5, 0, 1));
     CHECK(parse(R"({"tint": {"type": "rgb", "value": 0.25}})").tint == Spectrum(0.25));
     const std::string forms = "expected a colour (a number, [r,g,b] or {\"type\": \"rgb\", \"value\": …}), found ";
-    CHECK(refusal(R"({"tint": "red"})") == forms + "the string \"red\" at a.json:1:10 (/tint)");
-    CHECK(refusal(R"({"tint": [1, 2]})") == forms + "an array of 2 at a.json:1:10 (/tint)");
-    CHECK(refusal(R"({"tint": {"type": "blackbody"}})") == forms + "an object at a.json:1:10 (/tint)");
-    CHECK(refusal(R"({"tint": {"type": "rgb"}})") == "\"value\" is missing from the object at a.json:1:10 (/tint)");
-    CHECK(refusal(R"({"tint": {"type": "rgb", "value": [1, 1, "x"]}})").find("expected a number, found") == 0);
-    CHECK(refusal(R"({"tint": {"type": "rgb", "value": {"type": "rgb", "value": 1}}})").find("expected a number or") ==
+    CHECK(parameterRefusal(R"({"tint": "red"})") == forms + "the string \"red\" at a.json:1:10 (/tint)");
+    CHECK(parameterRefusal(R"({"tint": [1, 2]})") == forms + "an array of 2 at a.json:1:10 (/tint)");
+    CHECK(parameterRefusal(R"({"tint": {"type": "blackbody"}})") == forms + "an object at a.json:1:10 (/tint)");
+    CHECK(parameterRefusal(R"({"tint": {"type": "rgb"}})") == "\"value\" is missing from the object at a.json:1:10 (/tint)");
+    CHECK(parameterRefusal(R"({"tint": {"type": "rgb", "value": [1, 1, "x"]}})").find("expected a number, found") == 0);
+    CHECK(parameterRefusal(R"({"tint": {"type": "rgb", "value": {"type": "rgb", "value": 1}}})").find("expected a number or") ==
           0);
-    CHECK(refusal(R"({"tint": {"type": "rgb", "value": 1, "scale": 2}})").find("unknown key of a colour \"scale\"") ==
+    CHECK(parameterRefusal(R"({"tint": {"type": "rgb", "value": 1, "scale": 2}})").find("unknown key of a colour \"scale\"") ==
           0);
-    CHECK(refusal(R"({"tint": [0, 2, 0]})").find("0 <= x <= 1 for \"tint\", found an array of 3") != std::string::npos);
+    CHECK(parameterRefusal(R"({"tint": [0, 2, 0]})").find("0 <= x <= 1 for \"tint\", found an array of 3") != std::string::npos);
 }
 
 TEST_CASE("unknown keys are refused with the nearest name", "[parameters]") {
-    const std::string message = refusal("{\"type\": \"x\",\n \"chanis\": 3}");
+    const std::string message = parameterRefusal("{\"type\": \"x\",\n \"chanis\": 3}");
     CHECK(message.find("unknown parameter \"chanis\" at a.json:2:12 (/chanis); did you mean \"chains\"? Known: ") == 0);
     CHECK(message.find("\"heuristic\"") != std::string::npos);
     const auto node = JsonDocument::fromText(R"({"weight": 1, "radius": 2})", "a.json").root();
     CHECK(parseParameters<Everything>(node, {"type", "weight"}).radius == 2);
     CHECK(errorOf([&] { parseParameters<Everything>(node); }).has("unknown parameter \"weight\""));
-    CHECK(refusal("[]") == "expected an object, found an empty array at a.json:1:1");
+    CHECK(parameterRefusal("[]") == "expected an object, found an empty array at a.json:1:1");
 }
 
 TEST_CASE("values of the wrong type are refused", "[parameters]") {
-    CHECK(refusal(R"({"radius": "2"})") == "expected a number, found the string \"2\" at a.json:1:12 (/radius)");
-    CHECK(refusal(R"({"radius": null})").find("expected a number, found null") == 0);
-    CHECK(refusal(R"({"chains": 1.5})").find("expected an integer, found 1.5") == 0);
-    CHECK(refusal(R"({"adapt": 1})").find("expected true or false, found 1") == 0);
-    CHECK(refusal(R"({"heuristic": 1})").find("expected a string, found 1") == 0);
-    CHECK(refusal(R"({"weights": 1})").find("expected an array of numbers, found 1") == 0);
-    CHECK(refusal(R"({"weights": [1, true]})").find("expected a number, found true at a.json:1:17 (/weights/1)") == 0);
+    CHECK(parameterRefusal(R"({"radius": "2"})") == "expected a number, found the string \"2\" at a.json:1:12 (/radius)");
+    CHECK(parameterRefusal(R"({"radius": null})").find("expected a number, found null") == 0);
+    CHECK(parameterRefusal(R"({"chains": 1.5})").find("expected an integer, found 1.5") == 0);
+    CHECK(parameterRefusal(R"({"adapt": 1})").find("expected true or false, found 1") == 0);
+    CHECK(parameterRefusal(R"({"heuristic": 1})").find("expected a string, found 1") == 0);
+    CHECK(parameterRefusal(R"({"weights": 1})").find("expected an array of numbers, found 1") == 0);
+    CHECK(parameterRefusal(R"({"weights": [1, true]})").find("expected a number, found true at a.json:1:17 (/weights/1)") == 0);
 }
 
 TEST_CASE("bounds are kept, open and closed", "[parameters]") {
-    CHECK(refusal(R"({"radius": 0})") ==
+    CHECK(parameterRefusal(R"({"radius": 0})") ==
           "expected a number, 0 < x <= 100 pixels for \"radius\", found 0 at a.json:1:12 (/radius)");
     CHECK(parse(R"({"radius": 100})").radius == 100);
-    CHECK(refusal(R"({"radius": 100.5})").find("found 100.5") != std::string::npos);
-    CHECK(refusal(R"({"exponent": 1})").find("expected a number, x < 1 for \"exponent\", found 1") == 0);
-    CHECK(refusal(R"({"chains": 0})").find("expected an integer, 1 <= x for \"chains\", found 0") == 0);
-    CHECK(refusal(R"({"weights": [0, -1]})").find("0 <= x for \"weights\", found -1 at a.json:1:17 (/weights/1)") !=
+    CHECK(parameterRefusal(R"({"radius": 100.5})").find("found 100.5") != std::string::npos);
+    CHECK(parameterRefusal(R"({"exponent": 1})").find("expected a number, x < 1 for \"exponent\", found 1") == 0);
+    CHECK(parameterRefusal(R"({"chains": 0})").find("expected an integer, 1 <= x for \"chains\", found 0") == 0);
+    CHECK(parameterRefusal(R"({"weights": [0, -1]})").find("0 <= x for \"weights\", found -1 at a.json:1:17 (/weights/1)") !=
           std::string::npos);
     const JsonNode nan(Json{{"radius", std::nan("")}});
     CHECK(errorOf([&] { parseParameters<Everything>(nan); }).has("expected a number, found nan at /radius"));
 }
 
 TEST_CASE("what the type of a member cannot hold is refused", "[parameters]") {
-    CHECK(refusal(R"({"count": -1})").find("expected an integer >= 0, found -1") == 0);
-    CHECK(refusal(R"({"count": 4294967296})").find("expected an integer from 0 to 4294967295") == 0);
-    CHECK(refusal(R"({"chains": 2147483648})").find("expected an integer from -2147483648 to 2147483647") == 0);
-    CHECK(refusal(R"({"offset": 9223372036854775808})").find("expected an integer below 2^63") == 0);
-    CHECK(refusal(R"({"seed": 18446744073709551616})").find("expected an integer") == 0);
-    CHECK(refusal(R"({"exponent": -1e39})").find("expected a number within single precision") == 0);
+    CHECK(parameterRefusal(R"({"count": -1})").find("expected an integer >= 0, found -1") == 0);
+    CHECK(parameterRefusal(R"({"count": 4294967296})").find("expected an integer from 0 to 4294967295") == 0);
+    CHECK(parameterRefusal(R"({"chains": 2147483648})").find("expected an integer from -2147483648 to 2147483647") == 0);
+    CHECK(parameterRefusal(R"({"offset": 9223372036854775808})").find("expected an integer below 2^63") == 0);
+    CHECK(parameterRefusal(R"({"seed": 18446744073709551616})").find("expected an integer") == 0);
+    CHECK(parameterRefusal(R"({"exponent": -1e39})").find("expected a number within single precision") == 0);
 }
 
 TEST_CASE("choices are kept", "[parameters]") {
-    CHECK(refusal(R"({"heuristic": "blance"})") ==
+    CHECK(parameterRefusal(R"({"heuristic": "blance"})") ==
           "expected one of \"balance\", \"power\" for \"heuristic\", found the string \"blance\" at a.json:1:15 "
           "(/heuristic); did you mean \"balance\"?");
-    CHECK(refusal(R"({"heuristic": ""})").find("did you mean") == std::string::npos);
+    CHECK(parameterRefusal(R"({"heuristic": ""})").find("did you mean") == std::string::npos);
 }
 
 TEST_CASE("resolved values read back to the same", "[parameters]") {

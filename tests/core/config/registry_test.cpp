@@ -1,6 +1,6 @@
 #include "core/config/registry.h"
 
-#include "tests/core/config/error_of.h"
+#include "tests/support/error_of.h"
 #include "tests/support/catch.h"
 
 namespace {

@@ -1,5 +1,5 @@
 #include "core/mcmc/target.h"
-#include "tests/core/config/error_of.h"
+#include "tests/support/error_of.h"
 #include "tests/support/catch.h"
 
 using namespace ulam;

@@ -3,6 +3,7 @@
 #include "core/path/validate.h"
 
 #include "tests/core/path/random_paths.h"
+#include "tests/support/error_of.h"
 
 using namespace ulam;
 
@@ -55,10 +56,6 @@ struct Specimen {
     /// Recomputes the factors of the damaged path as the renderer would.
     void reevaluate() { evaluate(scene, path, factors); }
 };
-
-bool mentions(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
 
 /// Index of a vertex with this lobe, or 0.
 int find(const Path& path, Lobe lobe) {

@@ -2,11 +2,11 @@
 
 #include <unistd.h>
 
-#include <cstring>
 
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/render/driver.h"
+#include "tests/core/render/same_bytes.h"
 #include "tests/support/known_answers.h"
 #include "tests/support/level.h"
 #include "tests/support/path_scenes.h"
@@ -112,11 +112,6 @@ RenderResult session(const Scene& scene, const Job& job, const fs::path& file, i
     RenderResult result = render(scene, sampler, options);
     pieces = sampler.pieces();
     return result;
-}
-
-bool sameBytes(const Image& a, const Image& b) {
-    return a.pixels.size() == b.pixels.size() &&
-           std::memcmp(a.pixels.data(), b.pixels.data(), a.pixels.size() * sizeof(Rgb)) == 0;
 }
 
 /// Everything that does not depend on time.

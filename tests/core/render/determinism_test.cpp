@@ -1,19 +1,14 @@
 // The image of a work budget is the same bytes, however the work is shared out or interrupted.
 
-#include <cstring>
 
 #include "core/render/driver.h"
+#include "tests/core/render/same_bytes.h"
 #include "tests/support/known_answers.h"
 #include "tests/support/path_scenes.h"
 
 using namespace ulam;
 
 namespace {
-
-bool sameBytes(const Image& a, const Image& b) {
-    return a.pixels.size() == b.pixels.size() &&
-           std::memcmp(a.pixels.data(), b.pixels.data(), a.pixels.size() * sizeof(Rgb)) == 0;
-}
 
 struct Job {
     Json sampler;

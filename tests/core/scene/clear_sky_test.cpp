@@ -12,7 +12,7 @@ namespace {
 constexpr double kDegree = kPi / 180;
 
 /// With the zenith at +z and azimuths from +y towards +x.
-Vec3d towards(double elevation, double azimuth) {
+Vec3d directionAt(double elevation, double azimuth) {
     const double e = elevation * kDegree, a = azimuth * kDegree;
     return {std::cos(e) * std::sin(a), std::cos(e) * std::cos(a), std::sin(e)};
 }
@@ -23,7 +23,7 @@ void near(const Spectrum& found, const Spectrum& expected, double tolerance) {
 
 ClearSky skyAt(double elevation, double turbidity = 3) {
     ClearSky sky;
-    sky.sun = Vec3f(towards(elevation, 0));
+    sky.sun = Vec3f(directionAt(elevation, 0));
     sky.turbidity = turbidity;
     return sky;
 }
@@ -61,8 +61,8 @@ TEST_CASE("the sky's radiance is that of Mitsuba 3.9") {
     };
     for (const Case& c : cases) {
         CAPTURE(c.turbidity, c.sunElevation, c.elevation, c.azimuth);
-        const Vec3d w = towards(c.elevation, c.azimuth);
-        const double gamma = std::acos(std::min(1.0, w.dot(towards(c.sunElevation, 0))));
+        const Vec3d w = directionAt(c.elevation, c.azimuth);
+        const double gamma = std::acos(std::min(1.0, w.dot(directionAt(c.sunElevation, 0))));
         near(SkyModel(c.turbidity, c.albedo, c.sunElevation * kDegree).radiance(w.z, gamma), c.radiance, 5e-5);
     }
 }
@@ -94,7 +94,7 @@ TEST_CASE("the picture of the sky is its model, and ends at the horizon") {
         sky.skyScale = 2;
         const EnvironmentMap map = sky.map();
         const SkyModel model(turbidity, sky.albedo, elevation * kDegree);
-        const Vec3d sun = towards(elevation, 0);
+        const Vec3d sun = directionAt(elevation, 0);
         // Irradiances of a floor and of walls that face the sun, its side and its back: midpoints in azimuth and √cosθ.
         constexpr int kRows = 300, kColumns = 360;
         std::array<double, 4> found{}, expected{};
@@ -109,10 +109,10 @@ TEST_CASE("the picture of the sky is its model, and ends at the horizon") {
             }
         for (size_t k = 0; k < 4; ++k) CHECK(found[k] == Approx(expected[k]).epsilon(1e-4));
         for (double azimuth = 0; azimuth < 360; azimuth += 7) {
-            const double exact = 2 * model.radiance(0, std::acos(towards(0, azimuth).dot(sun))).x;
-            CHECK(map.radiance(Vec3f(towards(0, azimuth))).x == Approx(exact).epsilon(2e-3));
+            const double exact = 2 * model.radiance(0, std::acos(directionAt(0, azimuth).dot(sun))).x;
+            CHECK(map.radiance(Vec3f(directionAt(0, azimuth))).x == Approx(exact).epsilon(2e-3));
             for (const double below : {-1e-4, -5.0, -90.0}) {
-                const Vec3f w(towards(below, azimuth));
+                const Vec3f w(directionAt(below, azimuth));
                 REQUIRE(isBlack(map.radiance(w)));
                 REQUIRE(map.pdf(w) == 0);
             }

@@ -16,14 +16,14 @@ double overHemisphere(Function&& g, double bend) {
     using boost::math::quadrature::gauss_kronrod;
     return 2 * kPi * (gauss_kronrod<double, 31>::integrate(g, 0, bend, 12, 1e-10) + gauss_kronrod<double, 31>::integrate(g, bend, 1, 12, 1e-10));
 }
-Vec3d at(double z) {
+Vec3d atHeight(double z) {
     return {std::sqrt(1 - z * z), 0, z};
 }
 
 /// R(θ) as the mean of F G1 over visible normals, on a grid of their numbers that is dense towards the distribution's tails.
 double reflectanceBySamples(const MicrofacetDistribution& d, double ior, bool exterior, double z, int steps) {
     double sum = 0;
-    const Vec3d w = at(z);
+    const Vec3d w = atHeight(z);
     const auto warped = [](double s) { return s * s * (3 - 2 * s); };
     for (int i = 0; i < steps; ++i)
         for (int j = 0; j < steps; ++j) {
@@ -63,11 +63,11 @@ TEST_CASE("plastic: a white base gives everything back, a grey one what coat and
                 const Plastic bsdf = plastic(ior, base, nonlinear);
                 for (const double z : {1.0, 0.8, 0.4, 0.05}) {
                     INFO("ior " << ior << ", base " << base << ", nonlinear " << nonlinear << ", cosine " << z);
-                    const double coat = bsdf.eval(at(z), at(z), Lobe::DeltaReflection).x;
+                    const double coat = bsdf.eval(atHeight(z), atHeight(z), Lobe::DeltaReflection).x;
                     CHECK(coat == Approx(fresnelDielectric(z, std::max(ior, 1 / ior), ior > 1)));
                     const double bend = ior < 1 ? std::sqrt(1 - ior * ior) : 0.5;
                     const double diffuse =
-                        overHemisphere([&](double to) { return to * bsdf.eval(at(z), at(to), Lobe::Smooth).x; }, bend);
+                        overHemisphere([&](double to) { return to * bsdf.eval(atHeight(z), atHeight(to), Lobe::Smooth).x; }, bend);
                     // Light that crossed the coat bounces between the base and the coat until it is lost or leaves.
                     const double inside = diffuseFresnelFromInside(ior);
                     const double left = nonlinear ? base * (1 - inside) / (1 - base * inside) : base;
@@ -75,7 +75,7 @@ TEST_CASE("plastic: a white base gives everything back, a grey one what coat and
                 }
             }
     // Without a coat it is diffuse.
-    CHECK(plastic(1, 0.6).eval(at(0.4), at(0.9), Lobe::Smooth).x == Approx(0.6 / kPi));
+    CHECK(plastic(1, 0.6).eval(atHeight(0.4), atHeight(0.9), Lobe::Smooth).x == Approx(0.6 / kPi));
 }
 
 TEST_CASE("roughplastic: the coat's reflectance is the mean over visible normals") {
@@ -151,7 +151,7 @@ TEST_CASE("roughplastic becomes plastic as alpha vanishes, but for the rule for 
     smooth.coat.internalReflectance = rough.coat.internalReflectance;
     for (const double z : {1.0, 0.6, 0.2}) {
         // Away from the mirror direction only the base is left.
-        const Vec3d l = at(z), c = Vec3d(0, 0.8, 0.6);
+        const Vec3d l = atHeight(z), c = Vec3d(0, 0.8, 0.6);
         CHECK(rough.eval(l, c, Lobe::Smooth).x == Approx(smooth.eval(l, c, Lobe::Smooth).x).epsilon(1e-3));
     }
 }

@@ -3,7 +3,7 @@
 #include "core/base/file.h"
 #include "core/scene/export/mitsuba.h"
 #include "core/scene/mesh_io.h"
-#include "tests/core/config/error_of.h"
+#include "tests/support/error_of.h"
 #include "tests/core/scene/load_text.h"
 #include "core/render/driver.h"
 #include "tests/support/path_scenes.h"
@@ -13,10 +13,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const char* const kTriangle =
-    "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
-    "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
-
 /// An exported scene and its XML.
 struct Exported {
     SceneFolder files{"export_test"};
@@ -25,7 +21,7 @@ struct Exported {
     pugi::xml_document xml;
 
     explicit Exported(const std::string& text) {
-        files.write("triangle.ply", kTriangle);
+        files.write("triangle.ply", kTrianglePly);
         leftOut = exportMitsuba3(describeText(text, files.path), folder);
         REQUIRE(xml.load_file((folder / "scene.xml").c_str()));
     }
@@ -120,7 +116,7 @@ TEST_CASE("export: inline meshes become files, files are copied") {
     e.find("shape[@id='flat']/bsdf");
     const std::string copy = e.value("shape[@id='one']/string");
     CHECK(e.value("shape[@id='two']/string") == copy);
-    CHECK(readFile(e.folder / copy) == kTriangle);
+    CHECK(readFile(e.folder / copy) == kTrianglePly);
     CHECK(!fs::is_symlink(e.folder / copy));
 }
 

@@ -10,7 +10,7 @@ using namespace ulam;
 
 namespace {
 
-bool near(const Vec3f& a, const Vec3f& b, float tolerance = 2e-5f) { return length(a - b) <= tolerance * std::max(1.0f, length(b)); }
+bool alike(const Vec3f& a, const Vec3f& b, float tolerance = 2e-5f) { return length(a - b) <= tolerance * std::max(1.0f, length(b)); }
 
 /// A patch of a wavy surface, with normals and texture coordinates.
 Mesh wave() {
@@ -125,9 +125,9 @@ TEST_CASE("instances: rays meet the same points with the same geometry as when t
             ++met[a.shape];
             const Shape &s = twins.instanced.shapes[a.shape], &t = twins.flat.shapes[b.shape];
             const Vertex v = vertexOf(twins.instanced, origin, direction, a), w = vertexOf(twins.flat, origin, direction, b);
-            REQUIRE(near(v.position, w.position));
-            REQUIRE(near(v.position, origin + direction * a.distance, 1e-4f));
-            REQUIRE(near(v.normal, w.normal, 1e-4f));
+            REQUIRE(alike(v.position, w.position));
+            REQUIRE(alike(v.position, origin + direction * a.distance, 1e-4f));
+            REQUIRE(alike(v.normal, w.normal, 1e-4f));
             const auto* instance = std::get_if<MeshInstance>(&s.geometry);
             if (instance && !instance->mesh->normals.empty()) {
                 // Interpolated in the group, then turned: n with Mᵀ n along the group's normal. (Written out, vertex normals
@@ -136,16 +136,16 @@ TEST_CASE("instances: rays meet the same points with the same geometry as when t
                 const auto& normals = instance->mesh->normals;
                 const Vec3f own = normals[i0] * (1 - v.uv.x - v.uv.y) + normals[i1] * v.uv.x + normals[i2] * v.uv.y;
                 const auto& m = instance->toWorld;
-                REQUIRE(near(normalize(Vec3f(dot(m[0], v.shadingNormal), dot(m[1], v.shadingNormal), dot(m[2], v.shadingNormal))), normalize(own), 1e-5f));
-                REQUIRE(near(v.shadingNormal, w.shadingNormal, placing.round ? 1e-4f : 0.2f));
+                REQUIRE(alike(normalize(Vec3f(dot(m[0], v.shadingNormal), dot(m[1], v.shadingNormal), dot(m[2], v.shadingNormal))), normalize(own), 1e-5f));
+                REQUIRE(alike(v.shadingNormal, w.shadingNormal, placing.round ? 1e-4f : 0.2f));
             } else {
-                REQUIRE(near(v.shadingNormal, w.shadingNormal, 1e-4f));
+                REQUIRE(alike(v.shadingNormal, w.shadingNormal, 1e-4f));
             }
             const Vec2f uv = s.texcoord(v), expected = t.texcoord(w);
             REQUIRE((uv - expected).length() < 2e-3f);
             if (s.triangleMesh() && s.triangleMesh()->texcoords.empty()) continue;  // any frame
-            REQUIRE(near(s.tangents(v).u, t.tangents(w).u, 2e-2f));
-            REQUIRE(near(s.tangents(v).v, t.tangents(w).v, 2e-2f));
+            REQUIRE(alike(s.tangents(v).u, t.tangents(w).u, 2e-2f));
+            REQUIRE(alike(s.tangents(v).v, t.tangents(w).v, 2e-2f));
             const Vec3f to = v.position + v.normal * 0.01f - origin;
             if (dot(v.normal, direction) < 0) REQUIRE(twins.instanced.rays().occluded(origin, to) == twins.flat.rays().occluded(origin, to));
         }
@@ -174,10 +174,10 @@ TEST_CASE("instances: mirrored normals stay outside, as Mitsuba 3 has them") {
         Hit hit{};
         REQUIRE(scene.rays().intersect(origin, down, hit));
         const Vertex v = vertexOf(scene, origin, down, hit);
-        CHECK(near(v.normal, c.normal, 1e-5f));
-        CHECK(near(v.shadingNormal, c.normal, 1e-5f));
-        CHECK(near(scene.shapes[0].tangents(v).u, c.tangents.u, 1e-4f));
-        CHECK(near(scene.shapes[0].tangents(v).v, c.tangents.v, 1e-4f));
+        CHECK(alike(v.normal, c.normal, 1e-5f));
+        CHECK(alike(v.shadingNormal, c.normal, 1e-5f));
+        CHECK(alike(scene.shapes[0].tangents(v).u, c.tangents.u, 1e-4f));
+        CHECK(alike(scene.shapes[0].tangents(v).v, c.tangents.v, 1e-4f));
     }
 }
 
@@ -200,11 +200,11 @@ TEST_CASE("instances: areas, uniform points and the numbers of points") {
                 const double a = random(), b = random();
                 const Vertex v = s.samplePoint(i, a, b), w = t.samplePoint(i, a, b);
                 const Sample2 back = s.invertPoint(v);
-                REQUIRE(near(s.samplePoint(i, back.u, back.v).position, v.position, 1e-4f));
+                REQUIRE(alike(s.samplePoint(i, back.u, back.v).position, v.position, 1e-4f));
                 // Where a number is next to a border between triangles they may differ.
                 if (v.primitive != w.primitive) continue;
-                REQUIRE(near(v.position, w.position, 1e-3f));
-                REQUIRE(near(v.normal, w.normal, 1e-4f));
+                REQUIRE(alike(v.position, w.position, 1e-3f));
+                REQUIRE(alike(v.normal, w.normal, 1e-4f));
             }
         }
     }

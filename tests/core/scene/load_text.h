@@ -5,9 +5,9 @@
 #include <fstream>
 #include <string>
 
-#include "core/base/error.h"
 #include "core/scene/load.h"
 #include "tests/support/catch.h"
+#include "tests/support/error_of.h"
 
 namespace ulam {
 
@@ -34,6 +34,11 @@ inline Scene loadText(const std::string& text, const std::filesystem::path& fold
     return describeText(text, folder).build();
 }
 
+/// A file of one triangle.
+inline const char* const kTrianglePly =
+    "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+    "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+
 /// A scene with a sensor, a light and these entries.
 inline std::string sceneWith(const std::string& entries) {
     return R"({"type": "scene", "sensor": {"type": "perspective"}, "light": {"type": "point"})" +
@@ -43,18 +48,10 @@ inline std::string sceneWith(const std::string& entries) {
 /// The message of the error that loading this scene must give; its exit code must be the expected one.
 inline std::string errorOf(const std::string& text, ExitCode code = ExitCode::InvalidConfig,
                            const std::filesystem::path& folder = "/nonexistent") {
-    try {
-        loadText(text, folder);
-    } catch (const Error& error) {
-        CHECK(error.code() == code);
-        return error.what();
-    }
-    FAIL("no error for " << text);
-    return "";
-}
-
-inline bool mentions(const std::string& message, const std::string& part) {
-    return message.find(part) != std::string::npos;
+    const Complaint complaint = errorOf([&] { loadText(text, folder); });
+    INFO(text << ": " << complaint.message);
+    CHECK(complaint.code == code);
+    return complaint.message;
 }
 
 }  // namespace ulam

@@ -5,29 +5,23 @@
 #include "core/base/error.h"
 #include "core/base/random.h"
 #include "tests/support/catch.h"
+#include "tests/support/error_of.h"
 
 using namespace ulam;
 
 namespace {
 
-std::string errorOf(auto&& read) {
-    try {
-        read();
-    } catch (const Error& error) {
-        CHECK(error.code() == ExitCode::InvalidConfig);
-        return error.what();
-    }
-    FAIL("no error");
-    return "";
+std::string complaintAbout(std::invocable auto&& read) {
+    const Complaint complaint = errorOf(read);
+    INFO(complaint.message);
+    CHECK(complaint.code == ExitCode::InvalidConfig);
+    return complaint.message;
 }
 std::string objError(const std::string& text) {
-    return errorOf([&] { readObj(text, "a.obj", true); });
+    return complaintAbout([&] { readObj(text, "a.obj", true); });
 }
 std::string plyError(const std::string& text) {
-    return errorOf([&] { readPly(text, "a.ply"); });
-}
-bool mentions(const std::string& message, const std::string& part) {
-    return message.find(part) != std::string::npos;
+    return complaintAbout([&] { readPly(text, "a.ply"); });
 }
 
 const std::string kSquarePly =

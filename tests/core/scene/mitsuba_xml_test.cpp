@@ -3,7 +3,7 @@
 #include "core/scene/loading/spectra.h"
 #include "core/scene/mitsuba/upgrade.h"
 #include "core/scene/mitsuba/xml.h"
-#include "tests/core/config/error_of.h"
+#include "tests/support/error_of.h"
 #include "tests/core/scene/load_text.h"
 
 #include <fstream>

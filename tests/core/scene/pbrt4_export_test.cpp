@@ -15,12 +15,12 @@ namespace fs = std::filesystem;
 namespace {
 
 /// An exported scene, with its text and what was left out of it.
-struct Exported {
+struct ExportedPbrt {
     SceneFolder files{"pbrt4_export"};
     fs::path folder = files.path / "out";
     std::vector<std::string> leftOut;
 
-    Exported() {
+    ExportedPbrt() {
         Image sky(512, 257);
         for (int j = 0; j < 257; ++j)
             for (int i = 0; i < 512; ++i)
@@ -132,7 +132,7 @@ const std::string kAreas = R"({"type": "scene",
 }  // namespace
 
 TEST_CASE("pbrt-v4 export: a scene that is read back looks the same") {
-    Exported e;
+    ExportedPbrt e;
     SECTION("the Cornell box, and one with a lamp 5 % brighter does not") {
         const auto box = [&](double lamp) {
             return SceneDescription::fromNode(JsonNode(Json{{"type", "cornell_box"}, {"radiance", lamp}}),
@@ -156,7 +156,7 @@ TEST_CASE("pbrt-v4 export: a scene that is read back looks the same") {
 }
 
 TEST_CASE("pbrt-v4 export: what pbrt lacks is named") {
-    Exported e;
+    ExportedPbrt e;
     const SceneDescription description = e.describe(R"({"type": "scene", "integrator": {"type": "path"},
         "sensor": {"type": "perspective", "sampler": {"type": "independent"}, "film": {"type": "hdrfilm", "pixel_format": "rgb"}},
         "lamp": {"type": "spot", "cutoff_angle": 20},
@@ -198,7 +198,7 @@ TEST_CASE("pbrt-v4 export: what pbrt lacks is named") {
 }
 
 TEST_CASE("Mitsuba 3 export: octahedral environments and scaled pictures are made ones that Mitsuba has") {
-    Exported e;
+    ExportedPbrt e;
     const auto description = e.describe(R"({"type": "scene", "sensor": {"type": "perspective"},
         "sky": {"type": "envmap", "filename": "square.exr", "mapping": "octahedral", "scale": 2},
         "wall": {"type": "rectangle", "bsdf": {"type": "diffuse", "reflectance": {"type": "bitmap", "filename": "picture.exr", "scale": 0.5, "invert": true}}}})");

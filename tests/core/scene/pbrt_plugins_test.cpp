@@ -22,10 +22,6 @@ std::string substitutions(const JsonDocument& document) {
     return document.json().contains("$substitutions") ? document.json()["$substitutions"].dump() : "";
 }
 
-const char* const kTriangle =
-    "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
-    "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
-
 Vec3f faceNormal(const Scene& scene, size_t shape) {
     return std::get<Mesh>(scene.shapes.at(shape).geometry).faceNormals.at(0);
 }
@@ -188,7 +184,7 @@ TEST_CASE("pbrt: textures, their mappings, and arithmetic that leaves one of the
     CHECK(entry(pbrt.read(R"(Texture "r" "float" "imagemap" "string filename" "a.exr" "string encoding" "linear"
         Material "conductor" "texture roughness" "r" "bool remaproughness" false Shape "sphere")"),
                 "material")["bsdf"]["alpha"]["id"] == "r");
-    pbrt.folder.write("bare.ply", kTriangle);
+    pbrt.folder.write("bare.ply", kTrianglePly);
     CHECK(pbrt.complaint(picture +
                          R"(Material "diffuse" "texture reflectance" "t" Shape "plymesh" "string filename" "bare.ply")")
               .has("without texture coordinates"));
@@ -196,7 +192,7 @@ TEST_CASE("pbrt: textures, their mappings, and arithmetic that leaves one of the
 
 TEST_CASE("pbrt: sides of shapes") {
     const PbrtScene pbrt;
-    pbrt.folder.write("t.ply", kTriangle);
+    pbrt.folder.write("t.ply", kTrianglePly);
     const std::string flat = R"(Shape "trianglemesh" "point3 P" [ 0 0 0 1 0 0 0 1 0 ] )",
                       smooth = flat + R"("normal N" [ 0 0 -1 0 0 -1 0 0 -1 ] )";
     const std::string file = R"(Shape "plymesh" "string filename" "t.ply" )", lamp = "LightSource \"point\"\n";

@@ -2,7 +2,7 @@
 // Scenes of pbrt-v4 written down in tests.
 
 #include "core/scene/pbrt/pbrt.h"
-#include "tests/core/config/error_of.h"
+#include "tests/support/error_of.h"
 #include "tests/core/scene/load_text.h"
 
 namespace ulam {

@@ -1,7 +1,7 @@
 // Mitsuba's .serialized meshes, made here by hand.
 
 #include "core/scene/mesh_io.h"
-#include "tests/core/config/error_of.h"
+#include "tests/support/error_of.h"
 #include "tests/core/scene/load_text.h"
 
 #include <zlib.h>
@@ -90,7 +90,7 @@ TEST_CASE("a serialized mesh as a shape of a scene") {
 
 TEST_CASE("damaged files and files that promise more than they hold are refused") {
     const std::string good = file(4, {triangle<float>(4, 3, 0)});
-    const auto attempt = [](const std::string& bytes) { return ulam::errorOf([&] { readSerialized(bytes, "a.serialized", 0); }); };
+    const auto attempt = [](const std::string& bytes) { return errorOf([&] { readSerialized(bytes, "a.serialized", 0); }); };
     CHECK(attempt(good).code == ExitCode::Done);
     for (size_t n = 0; n < good.size(); ++n) CHECK(attempt(good.substr(0, n)).code == ExitCode::InvalidConfig);
     for (size_t i = 0; i < good.size(); ++i) {

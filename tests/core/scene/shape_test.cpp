@@ -49,7 +49,7 @@ std::vector<Shape> turnedShapes() {
     return shapes;
 }
 
-bool near(const Vec3f& a, const Vec3f& b, float tolerance = 1e-6f) {
+bool within(const Vec3f& a, const Vec3f& b, float tolerance = 1e-6f) {
     return length(a - b) <= tolerance;
 }
 
@@ -67,7 +67,7 @@ TEST_CASE("points of a mesh are uniform by area") {
         CHECK(v.shape == 7);
         first += v.primitive == 0;
         mean += Vec3d(v.position);
-        REQUIRE(near(v.normal, {0, 0, 1}));
+        REQUIRE(within(v.normal, {0, 0, 1}));
     }
     mean /= kPoints;
     // 5 standard deviations of a fraction, and of a mean of coordinates whose deviation is below 1.
@@ -84,7 +84,7 @@ TEST_CASE("the numbers of a point give the point again") {
             const Sample2 s = shape.invertPoint(v);
             const Vertex again = shape.samplePoint(0, s.u, s.v);
             REQUIRE(again.primitive == v.primitive);
-            REQUIRE(near(again.position, v.position, 1e-5f));
+            REQUIRE(within(again.position, v.position, 1e-5f));
         }
 }
 
@@ -98,9 +98,9 @@ TEST_CASE("points of a sphere lie on it, uniformly, with normals on the chosen s
         const double u = random(), v = random();
         const Vertex a = outward.samplePoint(0, u, v), b = inward.samplePoint(0, u, v);
         REQUIRE(length(a.position - Vec3f(1, 2, 3)) == Approx(0.5));
-        REQUIRE(near(a.normal, (a.position - Vec3f(1, 2, 3)) * 2.0f, 1e-5f));
-        REQUIRE(near(b.normal, -a.normal));
-        REQUIRE(near(a.shadingNormal, a.normal));
+        REQUIRE(within(a.normal, (a.position - Vec3f(1, 2, 3)) * 2.0f, 1e-5f));
+        REQUIRE(within(b.normal, -a.normal));
+        REQUIRE(within(a.shadingNormal, a.normal));
         mean += Vec3d(a.normal);
     }
     CHECK((mean / kPoints).length() < 5 / std::sqrt(kPoints));
@@ -117,8 +117,8 @@ TEST_CASE("shading normals are interpolated, geometric ones come from the windin
     Vertex v{};
     v.uv = {0.5f, 0.25f};
     shape.setNormals(v);
-    CHECK(near(v.normal, {0, 0, 1}));
-    CHECK(near(v.shadingNormal, normalize(mesh.normals[0] * 0.25f + mesh.normals[1] * 0.5f + mesh.normals[2] * 0.25f)));
+    CHECK(within(v.normal, {0, 0, 1}));
+    CHECK(within(v.shadingNormal, normalize(mesh.normals[0] * 0.25f + mesh.normals[1] * 0.5f + mesh.normals[2] * 0.25f)));
 
     SECTION("normals that cancel out leave the geometric one") {
         mesh.normals = {{0, 0, 0}, {0, 0, 1}, {0, 0, -1}};
@@ -126,7 +126,7 @@ TEST_CASE("shading normals are interpolated, geometric ones come from the windin
         shape.prepare();
         v.uv = {0.5f, 0.5f};
         shape.setNormals(v);
-        CHECK(near(v.shadingNormal, {0, 0, 1}));
+        CHECK(within(v.shadingNormal, {0, 0, 1}));
     }
 }
 
@@ -145,7 +145,7 @@ TEST_CASE("tangents are the derivatives of the place by the surface parameters")
             const Tangents t = shape.tangents(v);
             const Vec3f moved = w.position - v.position;
             REQUIRE(length(t.u * step.x + t.v * step.y - moved) < 0.03f * length(moved) + 2e-6f);
-            CHECK(near(shape.tangent(v), t.u));
+            CHECK(within(shape.tangent(v), t.u));
             ++compared;
         }
         CHECK(compared > 100);
@@ -158,7 +158,7 @@ TEST_CASE("tangents where the surface has no parameters of its own") {
         const Shape shape = unequalTriangles();
         shape.setNormals(v);
         const Tangents t = shape.tangents(v);
-        CHECK(near(cross(t.u, t.v), v.normal));
+        CHECK(within(cross(t.u, t.v), v.normal));
     }
     SECTION("texture coordinates all on one line: likewise") {
         Mesh mesh;
@@ -170,18 +170,18 @@ TEST_CASE("tangents where the surface has no parameters of its own") {
         shape.prepare();
         shape.setNormals(v);
         const Tangents t = shape.tangents(v);
-        CHECK(near(cross(t.u, t.v), {0, 0, 1}));
+        CHECK(within(cross(t.u, t.v), {0, 0, 1}));
     }
     SECTION("the poles of a sphere and the centre of a disk: along the limits") {
         v.position = {1, 2, 3.5f};
         Tangents t = sphere(false).tangents(v);
-        CHECK(near(normalize(cross(t.u, t.v)), {0, 0, -1}));
+        CHECK(within(normalize(cross(t.u, t.v)), {0, 0, -1}));
         CHECK(length(t.v) == Approx(kPi / 2));
         Shape disk;
         disk.geometry = Disk{{0, 0, 0}, {2, 0, 0}, {0, 1, 0}, {0, 0, 1}};
         v.uv = {0, 0};
         t = disk.tangents(v);
-        CHECK(near(t.u, {2, 0, 0}));
-        CHECK(near(t.v, {0, 1, 0}));
+        CHECK(within(t.u, {2, 0, 0}));
+        CHECK(within(t.v, {0, 1, 0}));
     }
 }

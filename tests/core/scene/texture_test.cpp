@@ -26,7 +26,7 @@ Vertex hitVertex(const Scene& scene, const Vec3f& origin, const Vec3f& direction
     return v;
 }
 
-bool near(const Vec3f& a, const Vec3f& b) { return length(a - b) < 2e-4f * std::max(1.0f, length(b)); }
+bool sameColour(const Vec3f& a, const Vec3f& b) { return length(a - b) < 2e-4f * std::max(1.0f, length(b)); }
 
 }  // namespace
 
@@ -84,8 +84,8 @@ TEST_CASE("surface parameters and tangents are Mitsuba's") {
         const Vertex v = hitVertex(scene, c.origin, c.direction);
         const Vec2f uv = scene.shapes[0].texcoord(v);
         CHECK((uv - c.uv).length() < 1e-5f);
-        CHECK(near(scene.shapes[0].tangents(v).u, c.tangents.u));
-        CHECK(near(scene.shapes[0].tangents(v).v, c.tangents.v));
+        CHECK(sameColour(scene.shapes[0].tangents(v).u, c.tangents.u));
+        CHECK(sameColour(scene.shapes[0].tangents(v).v, c.tangents.v));
     }
 }
 
@@ -95,11 +95,11 @@ TEST_CASE("disk and cylinder: hits, normals, areas, uniform points that lie on t
            "c": {"type": "cylinder", "p0": [5,0,0], "p1": [5,3,0], "radius": 0.5, "flip_normals": true})"));
     CHECK(scene.shapes[0].area == Approx(2 * kPi));
     CHECK(scene.shapes[1].area == Approx(3 * kPi));
-    CHECK(near(hitVertex(scene, {1.2f, 0.4f, 5}, {0, 0, -1}).normal, {0, 0, 1}));
-    CHECK(near(hitVertex(scene, {1.2f, 0.4f, -5}, {0, 0, 1}).normal, {0, 0, 1}));
+    CHECK(sameColour(hitVertex(scene, {1.2f, 0.4f, 5}, {0, 0, -1}).normal, {0, 0, 1}));
+    CHECK(sameColour(hitVertex(scene, {1.2f, 0.4f, -5}, {0, 0, 1}).normal, {0, 0, 1}));
     const Vertex outside = hitVertex(scene, {5, 1, 4}, {0, 0, -1});
-    CHECK(near(outside.position, {5, 1, 0.5f}));
-    CHECK(near(outside.normal, {0, 0, -1}));
+    CHECK(sameColour(outside.position, {5, 1, 0.5f}));
+    CHECK(sameColour(outside.normal, {0, 0, -1}));
     const Vertex inside = hitVertex(scene, {5, 10, 0.2f}, normalize(Vec3f(0, -8, -0.7f)));
     CHECK(inside.position.z == Approx(-0.5).epsilon(1e-4));
     Hit hit{};

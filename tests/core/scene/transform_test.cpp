@@ -2,6 +2,7 @@
 
 #include "core/base/error.h"
 #include "tests/support/catch.h"
+#include "tests/support/error_of.h"
 
 using namespace ulam;
 
@@ -21,19 +22,11 @@ bool near(const Vec3d& a, const Vec3d& b) {
     return (a - b).length() < 1e-12;
 }
 
-std::string errorOf(const std::string& text) {
-    try {
-        parse(text);
-    } catch (const Error& error) {
-        CHECK(error.code() == ExitCode::InvalidConfig);
-        return error.what();
-    }
-    FAIL("no error for " << text);
-    return "";
-}
-
-bool mentions(const std::string& message, const std::string& part) {
-    return message.find(part) != std::string::npos;
+std::string complaintAbout(const std::string& text) {
+    const Complaint complaint = errorOf([&] { parse(text); });
+    INFO(text << ": " << complaint.message);
+    CHECK(complaint.code == ExitCode::InvalidConfig);
+    return complaint.message;
 }
 
 }  // namespace
@@ -72,16 +65,16 @@ TEST_CASE("uniform scale is recognised, with its sign") {
 }
 
 TEST_CASE("what is no transformation is refused") {
-    CHECK(mentions(errorOf("[1,2,3]"), "16 numbers"));
-    CHECK(mentions(errorOf("[[1,2,3,4]]"), "16 numbers"));
-    CHECK(mentions(errorOf("\"identity\""), "16 numbers"));
-    CHECK(mentions(errorOf("[]"), "16 numbers"));
-    CHECK(mentions(errorOf(R"([{"type":"rotat","axis":[0,0,1],"angle":1}])"), "\"rotate\""));
-    CHECK(mentions(errorOf(R"([{"type":"rotate","axis":[0,0,0],"angle":1}])"), "axis"));
-    CHECK(mentions(errorOf(R"([{"type":"rotate","axis":[0,0,1],"angel":1}])"), "\"angle\""));
-    CHECK(mentions(errorOf(R"([{"type":"scale","value":[1,1,0]}])"), "not invertible"));
-    CHECK(mentions(errorOf("[1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,1,1]"), "last row"));
-    CHECK(mentions(errorOf(R"([{"type":"scale","value":1e200},{"type":"scale","value":1e200}])"), "not finite"));
-    CHECK(mentions(errorOf(R"([{"type":"lookat","origin":[0,0,0],"target":[0,1,0],"up":[0,1,0]}])"), "up"));
-    CHECK(mentions(errorOf(R"([{"type":"lookat","origin":[0,0,0],"target":[0,0,0],"up":[0,1,0]}])"), "target"));
+    CHECK(mentions(complaintAbout("[1,2,3]"), "16 numbers"));
+    CHECK(mentions(complaintAbout("[[1,2,3,4]]"), "16 numbers"));
+    CHECK(mentions(complaintAbout("\"identity\""), "16 numbers"));
+    CHECK(mentions(complaintAbout("[]"), "16 numbers"));
+    CHECK(mentions(complaintAbout(R"([{"type":"rotat","axis":[0,0,1],"angle":1}])"), "\"rotate\""));
+    CHECK(mentions(complaintAbout(R"([{"type":"rotate","axis":[0,0,0],"angle":1}])"), "axis"));
+    CHECK(mentions(complaintAbout(R"([{"type":"rotate","axis":[0,0,1],"angel":1}])"), "\"angle\""));
+    CHECK(mentions(complaintAbout(R"([{"type":"scale","value":[1,1,0]}])"), "not invertible"));
+    CHECK(mentions(complaintAbout("[1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,1,1]"), "last row"));
+    CHECK(mentions(complaintAbout(R"([{"type":"scale","value":1e200},{"type":"scale","value":1e200}])"), "not finite"));
+    CHECK(mentions(complaintAbout(R"([{"type":"lookat","origin":[0,0,0],"target":[0,1,0],"up":[0,1,0]}])"), "up"));
+    CHECK(mentions(complaintAbout(R"([{"type":"lookat","origin":[0,0,0],"target":[0,0,0],"up":[0,1,0]}])"), "target"));
 }

@@ -77,7 +77,7 @@ TEST_CASE("what does not fit together is refused", "[experiment]") {
     const Folder folder;
     Json both = tinyExperiment();
     both["scene"] = tinyScene();
-    CHECK(contains(errorOf([&] { planOf(folder, both); }).second, "either"));
+    CHECK(contains(errorOf([&] { planOf(folder, both); }).message, "either"));
     for (const char* key : {"samplers", "budget", "reference", "scenes"}) {
         Json without = tinyExperiment();
         without.erase(key);
@@ -91,10 +91,10 @@ TEST_CASE("files that are not there are missing inputs", "[experiment]") {
     const Folder folder;
     Json experiment = tinyExperiment();
     experiment["scenes"]["wall"] = "no-such-scene.json";
-    CHECK(errorOf([&] { planOf(folder, experiment); }).first == ExitCode::InputMissing);
+    CHECK(errorOf([&] { planOf(folder, experiment); }).code == ExitCode::InputMissing);
     experiment = tinyExperiment();
     experiment["reference"] = "no-such-image.exr";
-    CHECK(errorOf([&] { planOf(folder, experiment); }).first == ExitCode::InputMissing);
+    CHECK(errorOf([&] { planOf(folder, experiment); }).code == ExitCode::InputMissing);
 }
 
 TEST_CASE("NaN is no value", "[experiment]") {
@@ -122,7 +122,7 @@ TEST_CASE("a mix of mutations is resolved to the last parameter", "[experiment]"
     CHECK(mutations["lens"].size() > 2);
     CHECK(mutations["bidirectional"]["weight"] == 0.5);
     setValueByPath(experiment, "samplers.mlt.mutations.lense", Json::object());
-    CHECK(contains(errorOf([&] { planOf(folder, experiment); }).second, "did you mean \"lens\""));
+    CHECK(contains(errorOf([&] { planOf(folder, experiment); }).message, "did you mean \"lens\""));
 }
 
 TEST_CASE("a reference may differ from scene to scene", "[experiment]") {
@@ -140,7 +140,7 @@ TEST_CASE("a reference may differ from scene to scene", "[experiment]") {
     CHECK(plan.cells[0].reference != plan.cells.back().reference);
 
     experiment["reference"].erase("other");
-    CHECK(contains(errorOf([&] { planOf(folder, experiment); }).second, "other"));
+    CHECK(contains(errorOf([&] { planOf(folder, experiment); }).message, "other"));
 }
 
 TEST_CASE("the schema describes exactly the keys that are read", "[experiment]") {

@@ -15,7 +15,7 @@ JsonDocument readAll(const Folder& folder, const std::vector<std::pair<std::stri
 
 std::string errorOfReading(const std::vector<std::pair<std::string, std::string>>& files) {
     const Folder folder;
-    return errorOf([&] { readAll(folder, files); }).second;
+    return errorOf([&] { readAll(folder, files); }).message;
 }
 
 }  // namespace
@@ -70,5 +70,5 @@ TEST_CASE("an extended experiment is planned as one that is written out", "[exte
     // Nothing is merged into what --set brings.
     JsonDocument late = readExperiment(folder / "base.json");
     late.set("extends", "own.json", "--set extends=own.json");
-    CHECK(contains(errorOf([&] { makePlan(late, folder / "base.json"); }).second, "in a file only"));
+    CHECK(contains(errorOf([&] { makePlan(late, folder / "base.json"); }).message, "in a file only"));
 }

@@ -209,11 +209,11 @@ TEST_CASE("a file is a reference if its variance stands beside it", "[reference]
     CHECK(reference.variance.at(3, 3).x == 1e-4f);
 
     fs::remove(folder / "known.variance.exr");
-    CHECK(errorOf([&] { planOf(folder, experiment); }).first == ExitCode::InputMissing);
+    CHECK(errorOf([&] { planOf(folder, experiment); }).code == ExitCode::InputMissing);
 
     writeExr(folder / "known.variance.exr", Image(8, 8, Rgb(1)));
     const Plan wrong = planOf(folder, experiment);
-    CHECK(contains(errorOf([&] { prepareReference(wrong.references[0], folder / "run2"); }).second, "16 x 16"));
+    CHECK(contains(errorOf([&] { prepareReference(wrong.references[0], folder / "run2"); }).message, "16 x 16"));
 
     writeExr(folder / "known.variance.exr", Image(16, 16, Rgb(-1e-6f)));
     const Plan negative = planOf(folder, experiment);
@@ -238,7 +238,7 @@ TEST_CASE("a generator's truth has no variance, and knows the features' shares",
     CHECK(reference.variance.at(5, 5).x == 0);
 
     experiment["film"]["rfilter"] = {{"type", "gaussian"}};
-    CHECK(contains(errorOf([&] { planOf(folder, experiment); }).second, "box filter"));
+    CHECK(contains(errorOf([&] { planOf(folder, experiment); }).message, "box filter"));
 }
 
 TEST_CASE("a black reference is refused", "[reference]") {

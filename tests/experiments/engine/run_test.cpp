@@ -242,7 +242,7 @@ TEST_CASE("a failing reference ends the run, or its scene is reported while the 
     experiment["reference"] = {{"wall", experiment["reference"]},
                                {"other", {{"sampler", {{"type", "failing"}}}, {"budget", {{"spp", 64}}}}}};
     const Plan plan = planOf(folder, experiment);
-    CHECK(contains(errorOf([&] { runIn(folder, plan); }).second, "failed on purpose"));
+    CHECK(contains(errorOf([&] { runIn(folder, plan); }).message, "failed on purpose"));
 
     const RunOutcome outcome = runIn(folder, plan, true);
     CHECK(outcome.rendered == 6);
@@ -271,14 +271,14 @@ TEST_CASE("a reference that cannot be written ends the run in any case", "[run]"
     fs::create_directories(folder / "run");
     writeFileAtomically(folder / "run" / "references", "a file");
     const Plan plan = planOf(folder, tinyExperiment());
-    CHECK(errorOf([&] { runIn(folder, plan, true); }).first == ExitCode::CannotWrite);
+    CHECK(errorOf([&] { runIn(folder, plan, true); }).code == ExitCode::CannotWrite);
 }
 
 TEST_CASE("a folder that cannot be written ends the run at once", "[run]") {
     const Folder folder;
     writeFileAtomically(folder / "run", "a file");
     const Plan plan = planOf(folder, tinyExperiment());
-    CHECK(errorOf([&] { runIn(folder, plan, true); }).first == ExitCode::CannotWrite);
+    CHECK(errorOf([&] { runIn(folder, plan, true); }).code == ExitCode::CannotWrite);
 }
 
 TEST_CASE("the number of threads does not change an image", "[run]") {

@@ -114,7 +114,7 @@ TEST_CASE("conditions leave points out", "[sweep]") {
     CHECK(count(one("samplers.path.type", "in", {"bdpt", "path"})) == 9);
     CHECK(count(Json::array()) == 9);
 
-    const auto message = [&](const Json& where) { return errorOf([&] { count(where); }).second; };
+    const auto message = [&](const Json& where) { return errorOf([&] { count(where); }).message; };
     CHECK(contains(message(one("max_depth", ">", 9)), "no point of the sweep"));
     CHECK(contains(message(one("max_dept", ">", 1)), "no value at \"max_dept\""));
     CHECK(contains(message(one("samplers.path", "==", "path")), "no single value"));
@@ -163,12 +163,12 @@ TEST_CASE("keys of the whole run cannot be swept", "[sweep]") {
             CHECK(contains(message, "whole run"));
         }
     }
-    CHECK(contains(errorOf([] { expand({{"zip", {{"sweep.max_depth", {1, 2}}}}}); }).second, "itself"));
+    CHECK(contains(errorOf([] { expand({{"zip", {{"sweep.max_depth", {1, 2}}}}}); }).message, "itself"));
     CHECK(expand({{"replicates", {2, 3}}, {"reference.budget.spp", {64, 128}}}).size() == 4);
 }
 
 TEST_CASE("keys that overwrite each other, and equal points, are refused", "[sweep]") {
-    const auto message = [](const Json& sweep) { return errorOf([&] { expand(sweep); }).second; };
+    const auto message = [](const Json& sweep) { return errorOf([&] { expand(sweep); }).message; };
     CHECK(contains(message({{"max_depth", {2, 3}}, {"zip", {{"max_depth", {4, 5}}, {"budget.spp", {8, 16}}}}}),
                    "\"max_depth\" twice"));
     const Json depth = {4, 5}, whole = {{{"type", "path"}}, {{"type", "bdpt"}}};
@@ -185,19 +185,19 @@ TEST_CASE("a grid of too many points is refused before it is made", "[sweep]") {
     // 1000^8 points: more than a word counts.
     for (const char* key : {"a", "b", "c", "d", "e", "f", "g", "h"})
         sweep[key] = {{"log", {1.5, 1000}}, {"steps", 1000}};
-    CHECK(contains(errorOf([&] { expand(sweep); }).second, "more than 100000 points"));
+    CHECK(contains(errorOf([&] { expand(sweep); }).message, "more than 100000 points"));
 }
 
 TEST_CASE("what is no sweep is refused", "[sweep]") {
-    CHECK(contains(errorOf([] { expand({{"samplers.pth.rr_depth", {3}}}); }).second, "\"path\""));
-    CHECK(errorOf([] { expand({{"max_depth", Json::array()}}); }).first == ExitCode::InvalidConfig);
-    CHECK(errorOf([] { expand({{"max_depth", {{"log", {0, 8}}, {"steps", 3}}}}); }).first == ExitCode::InvalidConfig);
-    CHECK(errorOf([] { expand({{"max_depth", {{"log", {1, 8}}, {"steps", 1}}}}); }).first == ExitCode::InvalidConfig);
-    CHECK(errorOf([] { expand({{"max_depth", {{"log", {1, 8}}, {"step", 3}}}}); }).first == ExitCode::InvalidConfig);
-    CHECK(errorOf([] { expand({{"max_depth", {{"log", {1, 8}}, {"steps", 3}, {"draws", 3}}}}); }).first == ExitCode::InvalidConfig);
-    CHECK(errorOf([] { expand({{"max_depth", {{"log", {1, 8}}, {"linear", {1, 8}}, {"steps", 3}}}}); }).first == ExitCode::InvalidConfig);
-    CHECK(errorOf([] { expand({{"max_depth", {{"linear", {1, 8}}, {"draws", 1001}}}}); }).first == ExitCode::InvalidConfig);
-    CHECK(errorOf([] { expand({{"sweep.seed", {1, 2}}}); }).first == ExitCode::InvalidConfig);
+    CHECK(contains(errorOf([] { expand({{"samplers.pth.rr_depth", {3}}}); }).message, "\"path\""));
+    CHECK(errorOf([] { expand({{"max_depth", Json::array()}}); }).code == ExitCode::InvalidConfig);
+    CHECK(errorOf([] { expand({{"max_depth", {{"log", {0, 8}}, {"steps", 3}}}}); }).code == ExitCode::InvalidConfig);
+    CHECK(errorOf([] { expand({{"max_depth", {{"log", {1, 8}}, {"steps", 1}}}}); }).code == ExitCode::InvalidConfig);
+    CHECK(errorOf([] { expand({{"max_depth", {{"log", {1, 8}}, {"step", 3}}}}); }).code == ExitCode::InvalidConfig);
+    CHECK(errorOf([] { expand({{"max_depth", {{"log", {1, 8}}, {"steps", 3}, {"draws", 3}}}}); }).code == ExitCode::InvalidConfig);
+    CHECK(errorOf([] { expand({{"max_depth", {{"log", {1, 8}}, {"linear", {1, 8}}, {"steps", 3}}}}); }).code == ExitCode::InvalidConfig);
+    CHECK(errorOf([] { expand({{"max_depth", {{"linear", {1, 8}}, {"draws", 1001}}}}); }).code == ExitCode::InvalidConfig);
+    CHECK(errorOf([] { expand({{"sweep.seed", {1, 2}}}); }).code == ExitCode::InvalidConfig);
 }
 
 TEST_CASE("keys of other scenes and samplers do not touch a cell", "[sweep]") {

@@ -11,6 +11,7 @@
 #include "core/base/file.h"
 #include "experiments/engine/run.h"
 #include "experiments/engine/summary.h"
+#include "tests/support/error_of.h"
 
 namespace ulam::tests {
 
@@ -66,17 +67,6 @@ inline RunOutcome runIn(const Folder& folder, Plan plan, bool keepGoing = false)
     static const std::atomic<bool> never = false;
     Progress progress(true);
     return runPlan(plan, {folder / "run", 1, keepGoing}, never, progress);
-}
-
-/// Code and message of what a call throws; Done where it does not.
-template <class Call>
-std::pair<ExitCode, std::string> errorOf(Call call) {
-    try {
-        call();
-    } catch (const Error& error) {
-        return {error.code(), error.what()};
-    }
-    return {ExitCode::Done, ""};
 }
 
 inline bool contains(const std::string& text, const std::string& part) {

@@ -12,6 +12,11 @@ inline SceneDescription describeGenerator(const Json& generator) {
     return SceneDescription::fromNode(JsonNode(generator), "/nonexistent");
 }
 
+/// A film of n × n pixels.
+inline FilmSize square(int n) {
+    return {n, n, 0, 0, n, n};
+}
+
 inline Vertex firstHit(const Scene& scene, const Vec3f& origin, const Vec3f& direction) {
     Hit hit{};
     REQUIRE(scene.rays().intersect(origin, direction, hit));

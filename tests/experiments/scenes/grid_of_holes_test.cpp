@@ -12,10 +12,6 @@ Json grid(Json parameters) {
     return parameters;
 }
 
-FilmSize square(int n) {
-    return {n, n, 0, 0, n, n};
-}
-
 /// The truth against brute force in 4 × 4 tiles of the image.
 void checkTruth(const Json& generator, int samples) {
     const SceneDescription description = describeGenerator(generator);

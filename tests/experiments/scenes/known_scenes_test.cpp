@@ -5,14 +5,6 @@
 
 using namespace ulam;
 
-namespace {
-
-FilmSize square(int n) {
-    return {n, n, 0, 0, n, n};
-}
-
-}  // namespace
-
 TEST_CASE("every generator makes a scene with its defaults") {
     const auto generators = scenePlugins(PluginKind::Generators);
     CHECK(generators.size() >= 5);
