@@ -10,14 +10,14 @@ using namespace ulam;
 
 namespace {
 
-struct Job {
+struct Task {
     Json sampler;
     Budget budget;
 };
 
 /// Every sampler that works in any scene, with a budget of each kind.
-std::vector<Job> jobs() {
-    std::vector<Job> all;
+std::vector<Task> tasks() {
+    std::vector<Task> all;
     for (const std::string& name : samplerNames()) {
         if (name == "portal") continue;  // needs a scene with openings
         Json sampler = {{"type", name}, {"max_depth", 5}};
@@ -32,11 +32,11 @@ std::vector<Job> jobs() {
     return all;
 }
 
-RenderResult run(const Scene& scene, const Job& job, int threads, int snapshots = 0,
+RenderResult run(const Scene& scene, const Task& task, int threads, int snapshots = 0,
                  const std::optional<PreviewPlan>& preview = {}) {
-    const auto sampler = Registry<Sampler>::instance().create(JsonNode(job.sampler));
+    const auto sampler = Registry<Sampler>::instance().create(JsonNode(task.sampler));
     RenderOptions options;
-    options.budget = job.budget;
+    options.budget = task.budget;
     options.key = makeKey(5);
     options.threads = threads;
     options.snapshots = snapshots;
@@ -48,15 +48,15 @@ RenderResult run(const Scene& scene, const Job& job, int threads, int snapshots 
 
 TEST_CASE("the same work gives the same bytes with 1, 2, 3 and 8 threads") {
     const Scene scene = buildScene(pathScene("glass_and_mirror").dictionary);
-    for (const Job& job : jobs()) {
-        INFO(job.sampler.dump());
-        const RenderResult one = run(scene, job, 1);
+    for (const Task& task : tasks()) {
+        INFO(task.sampler.dump());
+        const RenderResult one = run(scene, task, 1);
         double sum = 0;
         for (const Rgb& p : one.image.pixels) sum += p.x;
         REQUIRE(sum > 0);
         for (const int threads : {2, 3, 8}) {
             INFO(threads << " threads");
-            const RenderResult many = run(scene, job, threads);
+            const RenderResult many = run(scene, task, threads);
             CHECK(many.units == one.units);
             CHECK(many.statistics.rays == one.statistics.rays);
             CHECK(many.statistics.featureEnergy == one.statistics.featureEnergy);
@@ -67,29 +67,29 @@ TEST_CASE("the same work gives the same bytes with 1, 2, 3 and 8 threads") {
 
 TEST_CASE("another seed gives another image") {
     const Scene scene = buildScene(pathScene("diffuse").dictionary);
-    for (const Job& job : jobs()) {
-        const auto sampler = Registry<Sampler>::instance().create(JsonNode(job.sampler));
+    for (const Task& task : tasks()) {
+        const auto sampler = Registry<Sampler>::instance().create(JsonNode(task.sampler));
         RenderOptions options;
-        options.budget = job.budget;
+        options.budget = task.budget;
         options.key = makeKey(5, 0, 1);
-        CHECK_FALSE(sameBytes(render(scene, *sampler, options).image, run(scene, job, 1).image));
+        CHECK_FALSE(sameBytes(render(scene, *sampler, options).image, run(scene, task, 1).image));
     }
 }
 
 TEST_CASE("snapshots do not change the result, and are results themselves") {
     const Scene scene = buildScene(pathScene("diffuse").dictionary);
-    for (const Job& job : jobs()) {
-        INFO(job.sampler.dump());
-        const RenderResult plain = run(scene, job, 2), stopped = run(scene, job, 2, 3);
+    for (const Task& task : tasks()) {
+        INFO(task.sampler.dump());
+        const RenderResult plain = run(scene, task, 2), stopped = run(scene, task, 2, 3);
         CHECK(stopped.units == plain.units);
         CHECK(sameBytes(stopped.image, plain.image));
         REQUIRE(stopped.snapshots.size() == 3);
-        if (job.budget.rays) continue;
+        if (task.budget.rays) continue;
         for (const Snapshot& snapshot : stopped.snapshots) {
             // As a run of that much work, with the seeding of the whole.
-            Job part = job;
+            Task part = task;
             const double units =
-                isChainSampler(job.sampler["type"]) ? double(snapshot.mutations) : double(snapshot.samples);
+                isChainSampler(task.sampler["type"]) ? double(snapshot.mutations) : double(snapshot.samples);
             part.budget = {};
             part.budget.spp = units / double(plain.image.pixels.size());
             CHECK(sameBytes(run(scene, part, 3).image, snapshot.image));
@@ -99,11 +99,11 @@ TEST_CASE("snapshots do not change the result, and are results themselves") {
 
 TEST_CASE("previews do not change the result, and the last is the image") {
     const Scene scene = buildScene(pathScene("diffuse").dictionary);
-    for (const Job& job : jobs()) {
-        INFO(job.sampler.dump());
+    for (const Task& task : tasks()) {
+        INFO(task.sampler.dump());
         std::vector<Image> shown;
         const PreviewPlan preview{.show = [&](Image image) { shown.push_back(std::move(image)); }, .interval = 1e-4};
-        const RenderResult plain = run(scene, job, 1), watched = run(scene, job, 2, 1, preview);
+        const RenderResult plain = run(scene, task, 1), watched = run(scene, task, 2, 1, preview);
         CHECK(watched.units == plain.units);
         CHECK(watched.statistics.rays == plain.statistics.rays);
         CHECK(sameBytes(watched.image, plain.image));
@@ -120,16 +120,16 @@ TEST_CASE("a run that was stopped is repeated exactly by the work it did") {
     for (const std::string& name : samplerNames()) {
         if (name == "portal") continue;
         INFO(name);
-        Job job{{{"type", name}, {"max_depth", 5}}, {}};
+        Task task{{{"type", name}, {"max_depth", 5}}, {}};
         const bool chains = isChainSampler(name);
-        if (chains) job.sampler["chains"] = 37, job.sampler["bootstrap"] = 5000;
-        job.budget.spp = 1e6;
+        if (chains) task.sampler["chains"] = 37, task.sampler["bootstrap"] = 5000;
+        task.budget.spp = 1e6;
         // Stopped from outside after some chunks.
         std::atomic<bool> interrupt = false;
         std::atomic<int> calls = 0;
-        const auto sampler = Registry<Sampler>::instance().create(JsonNode(job.sampler));
+        const auto sampler = Registry<Sampler>::instance().create(JsonNode(task.sampler));
         RenderOptions options;
-        options.budget = job.budget;
+        options.budget = task.budget;
         options.key = makeKey(5);
         options.threads = 2;
         options.interrupt = &interrupt;
@@ -137,8 +137,8 @@ TEST_CASE("a run that was stopped is repeated exactly by the work it did") {
         const RenderResult stopped = render(scene, *sampler, options);
         CHECK(stopped.interrupted);
         REQUIRE(stopped.units > 0);
-        job.budget.spp = double(stopped.units) / double(stopped.image.pixels.size());
-        const RenderResult again = run(scene, job, 1);
+        task.budget.spp = double(stopped.units) / double(stopped.image.pixels.size());
+        const RenderResult again = run(scene, task, 1);
         CHECK(again.units == stopped.units);
         CHECK(sameBytes(again.image, stopped.image));
     }
@@ -150,14 +150,14 @@ TEST_CASE("the bootstrap is planned alike with any number of threads, and a repe
     mutations.mutations = 20'000, rays.rays = 300'000;
     for (const char* name : {"mlt", "pssmlt"})
         for (const Budget& budget : {mutations, rays}) {
-            Job job{{{"type", name}, {"max_depth", 5}, {"chains", 37}}, budget};
-            INFO(job.sampler.dump());
-            const RenderResult one = run(scene, job, 1), three = run(scene, job, 3);
+            Task task{{{"type", name}, {"max_depth", 5}, {"chains", 37}}, budget};
+            INFO(task.sampler.dump());
+            const RenderResult one = run(scene, task, 1), three = run(scene, task, 3);
             CHECK(three.statistics.diagnostics == one.statistics.diagnostics);
             CHECK(sameBytes(three.image, one.image));
-            job.sampler["bootstrap"] = one.statistics.diagnostics["bootstrap_samples"];
-            job.budget = {};
-            job.budget.mutations = double(one.units);
-            CHECK(sameBytes(run(scene, job, 2).image, one.image));
+            task.sampler["bootstrap"] = one.statistics.diagnostics["bootstrap_samples"];
+            task.budget = {};
+            task.budget.mutations = double(one.units);
+            CHECK(sameBytes(run(scene, task, 2).image, one.image));
         }
 }

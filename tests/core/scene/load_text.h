@@ -34,6 +34,11 @@ inline Scene loadText(const std::string& text, const std::filesystem::path& fold
     return describeText(text, folder).build();
 }
 
+/// An entry of a scene that was converted.
+inline Json entry(const JsonDocument& document, const char* name) {
+    return document.json().at(name);
+}
+
 /// A file of one triangle.
 inline const char* const kTrianglePly =
     "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"

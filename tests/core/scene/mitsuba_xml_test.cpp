@@ -25,8 +25,6 @@ struct XmlScene {
     }
 };
 
-Json entry(const JsonDocument& document, const char* name) { return document.json().at(name); }
-
 void near(const Json& colour, double r, double g, double b) {
     INFO(colour.dump());
     REQUIRE(colour.size() == 3);

@@ -30,10 +30,6 @@ struct PbrtScene {
     }
 };
 
-inline Json entry(const JsonDocument& document, const char* name) {
-    return document.json().at(name);
-}
-
 inline void near(const Json& values, const std::vector<double>& expected, double tolerance = 1e-9) {
     INFO(values.dump());
     REQUIRE(values.size() == expected.size());

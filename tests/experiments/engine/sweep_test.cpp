@@ -135,7 +135,7 @@ TEST_CASE("zipped keys go together", "[sweep]") {
     CHECK(points[1][1].value == 16);
     CHECK(contains(errorOf([] {
                        expand({{"zip", {{"max_depth", {2, 3}}, {"budget.spp", {8}}}}});
-                   }).second,
+                   }).message,
                    "2 values"));
 }
 
