@@ -32,6 +32,7 @@ try:
     import numpy as np
     import OpenEXR  # noqa: F401
     import pandas as pd
+    import pyarrow  # noqa: F401
 except ImportError as error:
     print(f"the Python package is not tested: {error}")
     sys.exit(0)
@@ -47,6 +48,11 @@ drjit.set_thread_count(2)  # on a machine of one core Mitsuba waits for ever for
 
 def blocks(language):
     return re.findall(rf"^```{language}\n(.*?)^```", DOC, re.M | re.S)
+
+
+def tables(text):
+    """Frames that the documentation lists."""
+    return re.findall(r"^\| `run\.(\w+)` \|", text, re.M)
 
 
 def setUpModule():
@@ -134,6 +140,19 @@ class Frames(unittest.TestCase):
         self.assertTrue((run.mutation_statistics.filter(like="rejected.").dtypes == np.int64).all())
         self.assertEqual(run.comparisons["speedup"].dtype, np.float64)
         self.assertEqual(run.features["jumps_per_million"].dtype, np.float64)
+
+    def test_frames_come_back_from_parquet(self):
+        frames = [name for name in tables(DOC) if name != "parameters"]
+        self.assertEqual(len(frames), 9)
+        file = folder / "frame.parquet"
+        for name in frames:
+            with self.subTest(name):
+                frame = getattr(run, name)
+                frame.to_parquet(file)
+                pd.testing.assert_frame_equal(pd.read_parquet(file), frame)
+        text = run.parameters.astype({"value": str})
+        text.to_parquet(file)
+        self.assertEqual(pd.read_parquet(file).loc[(MLT, "chains"), "value"], "50")
 
     def test_comparisons(self):
         self.assertEqual(len(run.comparisons), len(summary["comparisons"]))
