@@ -15,10 +15,11 @@ class Viewer {
             split: null,
             left: 0,
         };
-        this.reference = this.comparableReference();
-        this.entries = this.makeEntries();
+        this.reference = comparableReference(group);
+        this.entries = viewerEntries(group, this.reference);
+        chooseReplicates(this.entries, "median");
         const first = this.entries[0].picture;
-        this.state.exposure = fittingExposure(this.reference ?? first);
+        this.fitted = this.state.exposure = fittingExposure(this.reference ?? first);
         this.aspect = first.width / first.height;
         const judged = this.entries.filter((entry) => entry.kind === "replicate").at(-1);
         this.insets = defaultCrops(judged?.picture, this.reference);
@@ -34,40 +35,8 @@ class Viewer {
         return group.cells.some((cell) => pictureIds(cell).mean !== undefined);
     }
 
-    /// Errors per pixel need a reference of the images' own size.
-    comparableReference() {
-        const reference = picture(referenceId(this.group));
-        const sizes = this.group.cells.map((cell) => picture(pictureIds(cell).mean)).filter(Boolean);
-        return sizes.every((p) => p.width === reference?.width && p.height === reference?.height) ? reference : null;
-    }
-
-    /// What can be shown, in the order of the keys: reference, one replicate of each cell, mean of each cell.
-    makeEntries() {
-        const withImages = this.group.cells.filter((cell) => pictureIds(cell).mean !== undefined);
-        const entries = this.reference ? [{ title: "reference", picture: this.reference, kind: "reference" }] : [];
-        for (const cell of withImages) entries.push({ cell, kind: "replicate", title: cell.label });
-        for (const cell of withImages)
-            entries.push({
-                cell,
-                kind: "mean",
-                title: cell.label,
-                note: `mean of ${cell.replicates ?? "all"} runs`,
-                picture: picture(pictureIds(cell).mean),
-            });
-        entries.filter((entry) => entry.kind === "replicate").forEach((entry) => this.chooseReplicate(entry));
-        return entries;
-    }
-
-    chooseReplicate(entry) {
-        const ids = pictureIds(entry.cell),
-            which = this.state.worst ? "worst" : "median";
-        const replicate = ids[`${which}_replicate`];
-        const value = entry.cell.metrics?.[primaryMetric]?.values?.[replicate];
-        entry.picture = picture(ids[which]);
-        entry.note = `${which} run${isNumber(value) ? `, ${metricName(primaryMetric)} ${number(value)}` : ""}`;
-    }
-
     build() {
+        this.controls = new ViewerControls(this);
         this.stage = this.linkedCanvas("stage", () => this.entries[this.state.shown]);
         this.stage.tabIndex = 0;
         this.stage.setAttribute("role", "img");
@@ -96,85 +65,13 @@ class Viewer {
                     this.divider,
                 ),
                 this.readout,
-                this.controls(),
+                this.controls.element,
                 saveButtons(stripName, () => this.strip(stripName)),
             ),
             el(
                 "div",
                 { class: "tiles", style: `grid-template-columns: repeat(${columns}, minmax(110px, 1fr))` },
                 tiles,
-            ),
-        );
-    }
-
-    controls() {
-        const { state } = this;
-        this.exposureValue = el("output");
-        this.exposure = el("input", {
-            type: "range",
-            class: "exposure",
-            min: -12,
-            max: 12,
-            step: 0.25,
-            "aria-label": "exposure in stops",
-            oninput: () => this.set({ exposure: Number(this.exposure.value) }),
-        });
-        this.showButtons = this.shows.map(({ id, key, name }) => {
-            const input = el("input", {
-                type: "radio",
-                class: `${id}-toggle`,
-                name: `show-${this.group.id}`,
-                onchange: () => this.set({ show: id }),
-            });
-            return { id, input, label: el("label", {}, input, ` ${name} `, key && el("kbd", {}, key)) };
-        });
-        this.splitBox = el("input", {
-            type: "checkbox",
-            class: "split-toggle",
-            onchange: () => this.set({ split: this.splitBox.checked ? 0.5 : null }),
-        });
-        this.leftChoice = el(
-            "select",
-            {
-                class: "split-left",
-                "aria-label": "picture left of the divider",
-                onchange: () => this.set({ left: this.leftChoice.selectedIndex }),
-            },
-            this.entries.map((entry) => el("option", {}, entry.kind === "mean" ? `${entry.title}, mean` : entry.title)),
-        );
-        this.worstBox = el("input", {
-            type: "checkbox",
-            class: "worst-toggle",
-            onchange: () => this.set({ worst: this.worstBox.checked }),
-        });
-        this.fitted = state.exposure;
-        return el(
-            "div",
-            { class: "controls" },
-            el("label", {}, "exposure ", this.exposure, this.exposureValue),
-            el(
-                "div",
-                { class: "shows", role: "radiogroup", "aria-label": "what is shown" },
-                this.showButtons.map(({ label }) => label),
-            ),
-            el("label", {}, this.splitBox, " split ", el("kbd", {}, "s"), " left: ", this.leftChoice),
-            el("label", {}, this.worstBox, " worst run ", el("kbd", {}, "w")),
-            el("button", { type: "button", onclick: () => this.reset() }, "reset view ", el("kbd", {}, "0")),
-            el(
-                "p",
-                { class: "note" },
-                el("kbd", {}, "1"),
-                " … ",
-                el("kbd", {}, "9"),
-                " flip · drag to pan · ",
-                el("kbd", {}, "+"),
-                " ",
-                el("kbd", {}, "−"),
-                " or click, then wheel, to zoom · ",
-                el("kbd", {}, "["),
-                " ",
-                el("kbd", {}, "]"),
-                " exposure · drag the two frames by their corners, or focus them and use the arrows; so is the divider",
             ),
         );
     }
@@ -294,8 +191,7 @@ class Viewer {
         this.state.v = clamp(this.state.v, half, 1 - half);
         this.state.exposure = clamp(this.state.exposure, -12, 12);
         if (this.state.split !== null) this.state.split = clamp(this.state.split, 0, 1);
-        if ("worst" in change)
-            this.entries.filter((entry) => entry.kind === "replicate").forEach((entry) => this.chooseReplicate(entry));
+        if ("worst" in change) chooseReplicates(this.entries, change.worst ? "worst" : "median");
         this.draw();
     }
 
@@ -411,15 +307,9 @@ class Viewer {
 
     draw() {
         const { state } = this;
-        this.exposure.value = state.exposure;
-        this.exposureValue.textContent = `${state.exposure > 0 ? "+" : ""}${plain(state.exposure)} EV`;
-        for (const { id, input } of this.showButtons) input.checked = id === state.show;
-        this.splitBox.checked = state.split !== null;
-        this.leftChoice.selectedIndex = state.left;
-        this.leftChoice.disabled = state.split === null;
+        this.controls.update(state);
         const explained = showOf(state.show).scale || !this.reference ? showOf(state.show) : showOf("error");
         this.legend.replaceChildren(...showLegend(explained));
-        this.worstBox.checked = state.worst;
         if (!this.stage.clientWidth) return;
         const shown = this.entries[state.shown];
         this.paintStage();

@@ -163,7 +163,7 @@ TEST_CASE("tangents where the surface has no parameters of its own") {
     SECTION("texture coordinates all on one line: likewise") {
         Mesh mesh;
         mesh.positions = {{0, 0, 2}, {2, 0, 2}, {0, 1, 2}};
-        mesh.texcoords = {{0, 0}, {1, 1}, {2, 2}};
+        mesh.texcoords = std::vector<Vec2f>{{0, 0}, {1, 1}, {2, 2}};
         mesh.triangles = {{0, 1, 2}};
         Shape shape;
         shape.geometry = mesh;
