@@ -8,8 +8,8 @@
 
 namespace ulam {
 
-inline bool mentions(const std::string& message, const std::string& part) {
-    return message.find(part) != std::string::npos;
+inline bool mentions(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
 }
 
 struct Complaint {

@@ -40,21 +40,21 @@ TEST_CASE("messages name the file a value comes from", "[extends]") {
     const Folder folder;
     JsonDocument document = readAll(folder, {{"a.json", "{\"extends\": \"b.json\",\n \"budget\": {\"time\": 1}}"},
                                              {"b.json", "{\"name\": \"b\",\n\"budget\": {\n\"spp\": 2}, \"film\": {\"width\": 3}}"}});
-    CHECK(contains(document.root().at("budget").at("time").where(), "a.json:2:"));
-    CHECK(contains(document.root().at("budget").at("spp").where(), "b.json:3:"));
-    CHECK(contains(document.root().at("film").where(), "b.json:3:"));
+    CHECK(mentions(document.root().at("budget").at("time").where(), "a.json:2:"));
+    CHECK(mentions(document.root().at("budget").at("spp").where(), "b.json:3:"));
+    CHECK(mentions(document.root().at("film").where(), "b.json:3:"));
     document.set("budget.spp", 4, "--set budget.spp=4");
-    CHECK(contains(document.root().at("budget").at("spp").where(), "--set budget.spp=4"));
-    CHECK(contains(document.root().at("film").at("width").where(), "b.json:3:"));
+    CHECK(mentions(document.root().at("budget").at("spp").where(), "--set budget.spp=4"));
+    CHECK(mentions(document.root().at("film").at("width").where(), "b.json:3:"));
 }
 
 TEST_CASE("files that cannot be extended are refused", "[extends]") {
-    CHECK(contains(errorOfReading({{"a.json", R"({"extends": "b.json"})"}, {"b.json", R"({"extends": "a.json"})"}}), "\"a.json\" would extend itself"));
-    CHECK(contains(errorOfReading({{"a.json", R"({"extends": "a.json"})"}}), "itself"));
-    CHECK(contains(errorOfReading({{"a.json", R"({"extends": "../b.json"})"}}), "in the folder of this one"));
-    CHECK(contains(errorOfReading({{"a.json", R"({"extends": "b.json"})"}}), "b.json"));
-    CHECK(contains(errorOfReading({{"a.json", R"({"extends": 3})"}}), "a.json:1:13"));
-    CHECK(contains(errorOfReading({{"a.json", R"({"extends": "b.json"})"}, {"b.json", "[]"}}), "b.json"));
+    CHECK(mentions(errorOfReading({{"a.json", R"({"extends": "b.json"})"}, {"b.json", R"({"extends": "a.json"})"}}), "\"a.json\" would extend itself"));
+    CHECK(mentions(errorOfReading({{"a.json", R"({"extends": "a.json"})"}}), "itself"));
+    CHECK(mentions(errorOfReading({{"a.json", R"({"extends": "../b.json"})"}}), "in the folder of this one"));
+    CHECK(mentions(errorOfReading({{"a.json", R"({"extends": "b.json"})"}}), "b.json"));
+    CHECK(mentions(errorOfReading({{"a.json", R"({"extends": 3})"}}), "a.json:1:13"));
+    CHECK(mentions(errorOfReading({{"a.json", R"({"extends": "b.json"})"}, {"b.json", "[]"}}), "b.json"));
 }
 
 TEST_CASE("an extended experiment is planned as one that is written out", "[extends]") {
@@ -70,5 +70,5 @@ TEST_CASE("an extended experiment is planned as one that is written out", "[exte
     // Nothing is merged into what --set brings.
     JsonDocument late = readExperiment(folder / "base.json");
     late.set("extends", "own.json", "--set extends=own.json");
-    CHECK(contains(errorOf([&] { makePlan(late, folder / "base.json"); }).message, "in a file only"));
+    CHECK(mentions(errorOf([&] { makePlan(late, folder / "base.json"); }).message, "in a file only"));
 }

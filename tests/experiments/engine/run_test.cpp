@@ -123,7 +123,7 @@ TEST_CASE("a damaged replicate is done again", "[run]") {
     const auto check = [&](const std::string& reason) {
         std::string damage;
         CHECK_FALSE(finishedReplicate(task, 1, folder / "run" / "cells" / "wall-path", &damage));
-        CHECK(contains(damage, reason));
+        CHECK(mentions(damage, reason));
         CHECK(runIn(folder, plan).rendered == 1);
         CHECK(JsonDocument::fromFile(result).json()["image_sha256"] == intact["image_sha256"]);
     };
@@ -219,8 +219,8 @@ TEST_CASE("a failing replicate ends the run, or is reported while the others go 
 
     const auto [code, message] = errorOf([&] { runIn(folder, plan); });
     CHECK(code == ExitCode::InvalidConfig);
-    CHECK(contains(message, "wall-broken, replicate 2"));
-    CHECK(contains(message, "failed on purpose"));
+    CHECK(mentions(message, "wall-broken, replicate 2"));
+    CHECK(mentions(message, "failed on purpose"));
 
     const RunOutcome outcome = runIn(folder, plan, true);
     REQUIRE(outcome.failures.size() == 1);
@@ -232,7 +232,7 @@ TEST_CASE("a failing replicate ends the run, or is reported while the others go 
     CHECK(summary["failures"][0]["message"] == "failed on purpose");
     CHECK(summary["failures"][0]["replicate"] == 1);
     // To people it is the second one, as in the progress.
-    CHECK(contains(summary["warnings"].dump(), "wall-broken: replicate 2 failed"));
+    CHECK(mentions(summary["warnings"].dump(), "wall-broken: replicate 2 failed"));
 }
 
 TEST_CASE("a failing reference ends the run, or its scene is reported while the others go on", "[run]") {
@@ -242,7 +242,7 @@ TEST_CASE("a failing reference ends the run, or its scene is reported while the 
     experiment["reference"] = {{"wall", experiment["reference"]},
                                {"other", {{"sampler", {{"type", "failing"}}}, {"budget", {{"spp", 64}}}}}};
     const Plan plan = planOf(folder, experiment);
-    CHECK(contains(errorOf([&] { runIn(folder, plan); }).message, "failed on purpose"));
+    CHECK(mentions(errorOf([&] { runIn(folder, plan); }).message, "failed on purpose"));
 
     const RunOutcome outcome = runIn(folder, plan, true);
     CHECK(outcome.rendered == 6);
@@ -251,7 +251,7 @@ TEST_CASE("a failing reference ends the run, or its scene is reported while the 
     CHECK(outcome.failures[0].cell.empty());
     CHECK(outcome.failures[0].message == "failed on purpose");
     for (const std::size_t i : {1, 2}) {
-        CHECK(contains(outcome.failures[i].cell, "other-"));
+        CHECK(mentions(outcome.failures[i].cell, "other-"));
         CHECK_FALSE(outcome.failures[i].replicate);
     }
     CHECK_FALSE(fs::exists(resultOf(folder, "other-path", 0)));
@@ -262,8 +262,8 @@ TEST_CASE("a failing reference ends the run, or its scene is reported while the 
     CHECK(summary["comparisons"].size() == 1);
     CHECK(summary["failures"][0]["cell"].is_null());
     CHECK(summary["failures"][1]["replicate"].is_null());
-    CHECK(contains(summary["warnings"].dump(), "the reference of other failed: failed on purpose"));
-    CHECK(contains(summary["warnings"].dump(), "other-bdpt failed: its reference failed"));
+    CHECK(mentions(summary["warnings"].dump(), "the reference of other failed: failed on purpose"));
+    CHECK(mentions(summary["warnings"].dump(), "other-bdpt failed: its reference failed"));
 }
 
 TEST_CASE("a reference that cannot be written ends the run in any case", "[run]") {

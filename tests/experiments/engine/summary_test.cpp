@@ -67,7 +67,7 @@ TEST_CASE("the summary has what scripts and the report read", "[summary]") {
         CHECK(summary["comparisons"][0].contains(key));
     // Three replicates cannot decide anything.
     CHECK(summary["comparisons"][0]["verdict"] == "undecided");
-    CHECK(contains(summary["verdicts"][0], "wall: bdpt has "));
+    CHECK(mentions(summary["verdicts"][0], "wall: bdpt has "));
 }
 
 TEST_CASE("a clear difference is decided", "[summary]") {
@@ -80,7 +80,7 @@ TEST_CASE("a clear difference is decided", "[summary]") {
     const Json summary = summaryOf(folder, experiment);
     CHECK(summary["comparisons"][0]["p_adjusted"].get<double>() < 0.05);
     CHECK(summary["comparisons"][0]["verdict"] == "better");
-    CHECK(contains(summary["verdicts"][0], ": better"));
+    CHECK(mentions(summary["verdicts"][0], ": better"));
 }
 
 TEST_CASE("a reference worse than the images decides nothing and says so", "[summary]") {
@@ -91,8 +91,8 @@ TEST_CASE("a reference worse than the images decides nothing and says so", "[sum
     const Json summary = summaryOf(folder, experiment);
     for (const Json& cell : summary["cells"]) CHECK(cell["reference_too_poor"] == true);
     CHECK(summary["comparisons"][0]["verdict"] == "undecided");
-    CHECK(contains(summary["verdicts"][0], "too poor"));
-    CHECK(contains(summary["warnings"].dump(), "too poor"));
+    CHECK(mentions(summary["verdicts"][0], "too poor"));
+    CHECK(mentions(summary["warnings"].dump(), "too poor"));
 }
 
 TEST_CASE("results of unlike machines in one comparison are told of", "[summary]") {
@@ -100,15 +100,15 @@ TEST_CASE("results of unlike machines in one comparison are told of", "[summary]
     const Plan plan = planOf(folder, tinyExperiment());
     runIn(folder, plan);
     const auto warnings = [&] { return summarize(plan, folder / "run", {})["warnings"].dump(); };
-    CHECK_FALSE(contains(warnings(), "unlike machines"));
+    CHECK_FALSE(mentions(warnings(), "unlike machines"));
     const fs::path file = folder / "run/cells/wall-bdpt/r001/result.json";
     Json result = JsonDocument::fromFile(file).json();
     CHECK(result["host"] == hostName());
     const std::string here = result["processor"];
     result["processor"] = "another processor";
     writeFileAtomically(file, dump(result));
-    CHECK(contains(warnings(), "results of unlike machines stand in 1 of 1 planned comparisons"));
-    CHECK(contains(warnings(), "another processor"));
+    CHECK(mentions(warnings(), "results of unlike machines stand in 1 of 1 planned comparisons"));
+    CHECK(mentions(warnings(), "another processor"));
     const Json cell = summarize(plan, folder / "run", {})["cells"][1];
     REQUIRE(cell["machines"].size() == 2);
     for (const Json& machine : cell["machines"]) CHECK(machine["replicates"] == (machine["processor"] == here ? 2 : 1));
@@ -177,10 +177,10 @@ TEST_CASE("tables have a row for each cell", "[summary]") {
     const Json summary = summaryOf(folder, experiment);
     const auto lines = [](const std::string& text) { return std::count(text.begin(), text.end(), '\n'); };
     CHECK(lines(summaryCsv(summary)) == 1 + 3 * 2);
-    CHECK(contains(summaryMarkdown(summary), "| wall-bdpt,rr_depth=4 | 3 |"));
-    CHECK(contains(summaryCsv(summary), "\"wall-bdpt,rr_depth=4\""));
-    CHECK(contains(summaryLatex(summary), "\\toprule"));
-    CHECK(contains(summaryLatex(summary), "bdpt, rr\\_depth 4"));
+    CHECK(mentions(summaryMarkdown(summary), "| wall-bdpt,rr_depth=4 | 3 |"));
+    CHECK(mentions(summaryCsv(summary), "\"wall-bdpt,rr_depth=4\""));
+    CHECK(mentions(summaryLatex(summary), "\\toprule"));
+    CHECK(mentions(summaryLatex(summary), "bdpt, rr\\_depth 4"));
     writeSummary(folder / "run", summary);
     for (const char* file : {"summary.json", "summary.csv", "summary.md", "summary.tex"})
         CHECK(fs::exists(folder / "run" / file));
@@ -194,6 +194,6 @@ TEST_CASE("LaTeX gets powers of ten and infinity", "[summary]") {
     comparison["ratio"] = 3.4e20;
     comparison["ci95"] = Json::array({1.0, nullptr});
     const std::string tex = summaryLatex(summary);
-    CHECK(contains(tex, "$1.2\\cdot10^{-5}$"));
-    CHECK(contains(tex, "$3.4\\cdot10^{20}$ (1--$\\infty$)"));
+    CHECK(mentions(tex, "$1.2\\cdot10^{-5}$"));
+    CHECK(mentions(tex, "$3.4\\cdot10^{20}$ (1--$\\infty$)"));
 }

@@ -69,8 +69,4 @@ inline RunOutcome runIn(const Folder& folder, Plan plan, bool keepGoing = false)
     return runPlan(plan, {folder / "run", 1, keepGoing}, never, progress);
 }
 
-inline bool contains(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
-
 }  // namespace ulam::tests
