@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/file.h"
 #include "experiments/cli/commands.h"
 
 namespace ulam {
@@ -14,6 +15,7 @@ void addReportCommand(CLI::App& app) {
     command.add_option("run", *folder, "folder of the run")->type_name("RUN_DIR")->required();
     command.callback([folder] {
         writeReport(*folder);
+        removeTemporaries(*folder, Below::No);
         fmt::print("{}\n", (std::filesystem::path(*folder) / "report.html").string());
     });
 }

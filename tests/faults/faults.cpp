@@ -5,9 +5,9 @@
 //     ULAM_FAULT_LOG=FILE               a line "operation path" for each call that counts ("rename from to")
 //     ULAM_FAULT=operation:n:fault[:sticky]   the n-th call of the operation, from 1, has the fault; sticky: all later ones too
 //
-// Operations: open (for writing), open-read, open-folder, write, fsync, fsync-folder, close (of what was open for writing),
-// rename, mkdir, ftruncate, unlink, flock. Faults: names of errors as below, SHORT (half of a write is done), KILL (SIGKILL
-// before the call). What the C library does inside itself (fwrite) cannot be caught so.
+// Operations: open (for writing), open-read, open-folder, write, fsync, fsync-folder, close (of what was open for writing and
+// still has a name), rename, mkdir, ftruncate, unlink, flock. Faults: names of errors as below, SHORT (half of a write is
+// done), KILL (SIGKILL before the call). What the C library does inside itself (fwrite) cannot be caught so.
 
 #include <dirent.h>
 #include <dlfcn.h>
@@ -203,7 +203,8 @@ int fdatasync(int file) {
 /// The file is closed all the same, as in Linux.
 int close(int file) {
     const int flags = ::fcntl(file, F_GETFL);
-    const bool counts = flags >= 0 && (flags & O_ACCMODE) != O_RDONLY;
+    struct stat status {};
+    const bool counts = flags >= 0 && (flags & O_ACCMODE) != O_RDONLY && ::fstat(file, &status) == 0 && status.st_nlink > 0;
     const int fault = counts ? faultOf("close", nameOf(file)) : 0;
     const int result = int(::syscall(SYS_close, file));
     return fault ? failing(fault) : result;
