@@ -81,7 +81,7 @@ def places_of(case):
 
 def is_convenience(place):
     """What a run can do without: it says so, or it is only slower the next time, or it is at the end of a lock."""
-    return place.file.startswith("cache/") or place.file.endswith("checkpoint") or \
+    return (place.file + "/").startswith("cache/") or place.file.endswith("checkpoint") or \
         place.operation == "close" and place.file.endswith(".lock")
 
 
