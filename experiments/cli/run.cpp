@@ -216,10 +216,18 @@ void runExperiment(const RunArguments& a) {
     if (outcome.interrupted) failIfSignalled(kGoOn);
     if (outcome.reused > 0)
         progress.message(fmt::format("{} replicates were there already, {} are new", outcome.reused, outcome.rendered));
-    Json summary = summarize(plan, options.runDir, outcome.failures);
+    progress.clear();
+    Progress judging(a.quiet);
+    const auto beforeCell = [&](double fraction, const std::string& cell) {
+        failIfSignalled(kGoOn);
+        judging.update(fraction, "statistics of " + cell);
+    };
+    Json summary = summarize(plan, options.runDir, outcome.failures, options.threads, beforeCell);
     if (tuning) summary["tuning"] = tuned;
     writeSummary(options.runDir, summary);
+    judging.update(1, "report");
     writeReport(options.runDir);
+    judging.clear();
     printResults(summary, options.runDir, a);
     if (!outcome.failures.empty()) {
         const std::size_t all = plan.order().size(), done = std::size_t(outcome.rendered + outcome.reused);

@@ -2,11 +2,13 @@
 
 #include <cmath>
 #include <map>
+#include <mutex>
 #include <set>
 
 #include "core/base/file.h"
 #include "core/config/json_number.h"
 #include "core/image/metrics.h"
+#include "core/render/parallel.h"
 #include "experiments/statistics/comparison.h"
 #include "experiments/statistics/speedup.h"
 
@@ -96,7 +98,8 @@ std::string verdictSentence(const Judged& judged, const Json& comparison) {
 
 class Summarizer {
 public:
-    Summarizer(const Plan& plan, const fs::path& runDir) : plan_(plan), runDir_(runDir) {}
+    Summarizer(const Plan& plan, const fs::path& runDir, int threads, const BeforeCell& beforeCell)
+        : plan_(plan), runDir_(runDir), threads_(threads), beforeCell_(beforeCell) {}
 
     Json make(const std::vector<Failure>& failures) {
         summarizeCells(failures);
@@ -141,19 +144,32 @@ private:
         std::set<std::string> withoutReference;
         for (const Failure& f : failures)
             if (!f.replicate) withoutReference.insert(f.cell);
+        std::vector<const Cell*> cells;
         std::map<std::size_t, Reference> references;
         for (const Cell& cell : plan_.cells) {
-            if (withoutReference.contains(cell.task.name)) {
-                cells_.emplace_back();  // comparisons find cells by their index
-                continue;
-            }
-            auto known = references.find(cell.reference);
-            if (known == references.end())
-                known =
-                    references.emplace(cell.reference, readReference(plan_.references[cell.reference], runDir_)).first;
-            cells_.push_back(summarizeCell(plan_, cell, known->second, runDir_));
-            if (cells_.back().errors.errors.empty()) warn("{}: no replicate finished", cell.task.name);
+            if (withoutReference.contains(cell.task.name)) continue;
+            cells.push_back(&cell);
+            if (!references.contains(cell.reference))
+                references.emplace(cell.reference, readReference(plan_.references[cell.reference], runDir_));
         }
+        cells_.resize(plan_.cells.size());  // comparisons find cells by their index
+        std::mutex mutex;
+        std::size_t begun = 0;
+        forEachChunk(
+            threads_, 0, cells.size(), 1, [](int) { return false; },
+            [&](int, uint64_t number, uint64_t) {
+                const Cell& cell = *cells[number];
+                {
+                    const std::lock_guard lock(mutex);
+                    if (beforeCell_) beforeCell_(double(begun) / double(cells.size()), cell.task.name);
+                    ++begun;
+                }
+                cells_[std::size_t(&cell - plan_.cells.data())] =
+                    summarizeCell(plan_, cell, references.at(cell.reference), runDir_);
+            });
+        for (const Cell* cell : cells)
+            if (cells_[std::size_t(cell - plan_.cells.data())].errors.errors.empty())
+                warn("{}: no replicate finished", cell->task.name);
     }
 
     void compareAll(Json& summary) {
@@ -195,6 +211,8 @@ private:
 
     const Plan& plan_;
     const fs::path& runDir_;
+    int threads_;
+    const BeforeCell& beforeCell_;
     std::vector<CellSummary> cells_;
     std::vector<std::string> warnings_;
 };
@@ -209,8 +227,9 @@ std::string metricTitle(const std::string& metric) {
     return found == titles.end() ? metric : found->second;
 }
 
-Json summarize(const Plan& plan, const fs::path& runDir, const std::vector<Failure>& failures) {
-    return Summarizer(plan, runDir).make(failures);
+Json summarize(const Plan& plan, const fs::path& runDir, const std::vector<Failure>& failures, int threads,
+               const BeforeCell& beforeCell) {
+    return Summarizer(plan, runDir, threads, beforeCell).make(failures);
 }
 
 void writeSummary(const fs::path& runDir, const Json& summary) {

@@ -2,6 +2,7 @@
 // What a run found: summary.json and its renderings, from the files of the run.
 
 #include <filesystem>
+#include <functional>
 
 #include "experiments/engine/cell_errors.h"
 #include "experiments/engine/run.h"
@@ -19,9 +20,14 @@ struct CellSummary {
 CellSummary summarizeCell(const Plan& plan, const Cell& cell, const Reference& reference,
                           const std::filesystem::path& runDir);
 
-/// The whole of summary.json. Cells without a finished replicate, or whose reference failed, are left out, with a
-/// warning.
-Json summarize(const Plan& plan, const std::filesystem::path& runDir, const std::vector<Failure>& failures);
+/// Called before each cell with the share of cells that are done, by one thread at a time. What it throws ends the
+/// summary.
+using BeforeCell = std::function<void(double fraction, const std::string& cell)>;
+
+/// The whole of summary.json, the same with any number of threads. Cells without a finished replicate, or whose
+/// reference failed, are left out, with a warning. Each thread keeps the images of one cell in memory.
+Json summarize(const Plan& plan, const std::filesystem::path& runDir, const std::vector<Failure>& failures,
+               int threads = 1, const BeforeCell& beforeCell = {});
 
 /// summary.json, summary.csv, summary.md and summary.tex.
 void writeSummary(const std::filesystem::path& runDir, const Json& summary);

@@ -1,6 +1,7 @@
 #include "experiments/engine/summary.h"
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "tests/experiments/engine/tiny.h"
 #include "tests/support/catch.h"
@@ -68,6 +69,25 @@ TEST_CASE("the summary has what scripts and the report read", "[summary]") {
     // Three replicates cannot decide anything.
     CHECK(summary["comparisons"][0]["verdict"] == "undecided");
     CHECK(mentions(summary["verdicts"][0], "wall: bdpt has "));
+}
+
+TEST_CASE("any number of threads makes the same summary, and tells of each cell before it", "[summary]") {
+    const Folder folder;
+    const Plan plan = planOf(folder, tinyExperiment());
+    runIn(folder, plan);
+    std::vector<std::string> cells;
+    std::vector<double> fractions;
+    const auto summary = summarize(plan, folder / "run", {}, 3, [&](double fraction, const std::string& cell) {
+        fractions.push_back(fraction);
+        cells.push_back(cell);
+    });
+    CHECK(summary == summarize(plan, folder / "run", {}));
+    CHECK(fractions == std::vector<double>{0, 0.5});
+    std::ranges::sort(cells);
+    CHECK(cells == std::vector<std::string>{"wall-bdpt", "wall-path"});
+    CHECK_THROWS_WITH(
+        summarize(plan, folder / "run", {}, 2, [](double, const std::string&) { throw std::runtime_error("enough"); }),
+        "enough");
 }
 
 TEST_CASE("a clear difference is decided", "[summary]") {
