@@ -69,6 +69,9 @@ public:
         run_->report(units_, result_.statistics);
         result_.statistics.biasLedger = substitutions_;
         result_.statistics.biasLedger.insert(result_.statistics.biasLedger.end(), run_->biasLedger().begin(), run_->biasLedger().end());
+        if (const uint64_t pixels = result_.statistics.unsampledPixels; pixels > 0)
+            result_.statistics.biasLedger.push_back(
+                fmt::format("{} of {:.0f} pixels have no sample and are black", pixels, pixels_));
         result_.statistics.seedingSeconds = seedingSeconds_;
         result_.statistics.seedingRays = seedingRays_;
         return std::move(result_);

@@ -18,6 +18,7 @@ struct RenderStatistics {
     uint64_t samples = 0;    ///< independent samples, those of the bootstrap included
     uint64_t mutations = 0;
     uint64_t chains = 0;
+    uint64_t unsampledPixels = 0;  ///< that have none of their own samples, and are black instead
     double seedingSeconds = 0;
     uint64_t seedingRays = 0;
     double normalization = 0;               ///< b; 0 for samplers without chains

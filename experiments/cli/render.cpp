@@ -1,5 +1,6 @@
 // ulam render: one image.
 
+#include <algorithm>
 #include <chrono>
 
 #include "core/base/error.h"
@@ -125,6 +126,9 @@ void renderImage(const RenderArguments& a) {
     if (result.interrupted && isBlack(result.image)) failIfSignalled("nothing was found until then, and no image is written" + after);
     if (!result.interrupted) refuseBlackImage(run, result);
     for (const std::string& warning : warningsOf(run, result)) progress.message("warning: " + warning);
+    for (const std::string& bias : result.statistics.biasLedger)
+        if (std::ranges::find(scene.substitutions, bias) == scene.substitutions.end())
+            progress.message("warning: the image is biased: " + bias);
     const fs::path output = a.output;
     const FileLock together = FileLock::await(output.parent_path());  // of renders with one name, the files of one win
     removeTemporaries(output.parent_path().empty() ? "." : output.parent_path(), Below::No);

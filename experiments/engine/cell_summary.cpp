@@ -306,14 +306,20 @@ private:
                 fmt::format("the brightness of {} of {} features is wrong (t over replicates, Holm, 5 %)",
                             wrongFeatures_, cell_.task.scene->scene.features.names.size()));
         std::uint64_t nonFinite = 0;
-        int black = 0;
+        int black = 0, unfinished = 0;
         for (const Replicate& r : replicates_) {
+            unfinished += r.result.value("unsampled_pixels", 0) > 0;
             for (const auto& [cause, count] : r.result.at("non_finite").items())
                 nonFinite += count.get<std::uint64_t>();
             black += std::ranges::all_of(r.image.pixels, [](const Rgb& p) { return p == Rgb(0); });
         }
         if (nonFinite > 0)
             warnings_.push_back(fmt::format("{} contributions were not finite and were left out", nonFinite));
+        if (unfinished > 0)
+            warnings_.push_back(
+                fmt::format("{} of {} images have pixels without a sample, which are black: too small a budget for one "
+                            "sample a pixel",
+                            unfinished, replicates_.size()));
         if (black > 0)
             warnings_.push_back(
                 fmt::format("{} of {} images are all black: no path carried light", black, replicates_.size()));

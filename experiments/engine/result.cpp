@@ -104,6 +104,7 @@ Json resultJson(const RunIdentity& run, const RenderResult& result, const Featur
         {"samples", s.samples},
         {"mutations", s.mutations},
         {"chains", s.chains},
+        {"unsampled_pixels", s.unsampledPixels},
         {"normalization", s.normalization},
         {"normalization_std_error", s.normalizationStandardError},
         {"mutation_statistics", mutations},

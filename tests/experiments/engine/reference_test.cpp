@@ -241,6 +241,16 @@ TEST_CASE("a generator's truth has no variance, and knows the features' shares",
     CHECK(mentions(errorOf([&] { planOf(folder, experiment); }).message, "box filter"));
 }
 
+TEST_CASE("a reference with pixels that have no sample is refused", "[reference]") {
+    const Folder folder;
+    Json experiment = tinyExperiment();
+    experiment["reference"] = {{"sampler", "bdpt"}, {"budget", {{"spp", 3.75}}}, {"replicates", 4}};
+    const Plan plan = planOf(folder, experiment);
+    const auto [code, message] = errorOf([&] { runIn(folder, plan); });
+    CHECK(code == ExitCode::InvalidConfig);
+    CHECK(mentions(message, "16 pixels have no sample in part 1"));
+}
+
 TEST_CASE("a black reference is refused", "[reference]") {
     const Folder folder;
     Json experiment = tinyExperiment();

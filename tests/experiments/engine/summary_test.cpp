@@ -90,6 +90,20 @@ TEST_CASE("any number of threads makes the same summary, and tells of each cell 
         "enough");
 }
 
+TEST_CASE("images with pixels that have no sample are told of", "[summary]") {
+    const Folder folder;
+    Json experiment = tinyExperiment();
+    experiment["samplers"]["light"] = {{"type", "light"}};
+    experiment["budget"] = {{"spp", 0.75}};
+    const Json summary = summaryOf(folder, experiment);
+    for (const Json& cell : summary["cells"])
+        CHECK(mentions(cell["warnings"].dump(), "3 of 3 images have pixels without a sample") ==
+              (cell["sampler"] != "light"));
+    const Json result = JsonDocument::fromFile(folder / "run/cells/wall-path/r001/result.json").json();
+    CHECK(result["unsampled_pixels"] == 64);
+    CHECK(mentions(result["bias_ledger"].dump(), "64 of 256 pixels have no sample and are black"));
+}
+
 TEST_CASE("a clear difference is decided", "[summary]") {
     const Folder folder;
     Json experiment = tinyExperiment();
