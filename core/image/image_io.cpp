@@ -226,4 +226,11 @@ void writePng(const std::string& path, const Image& image, double exposure) {
     writeFileAtomically(path, encodePng(path, image, exposure));
 }
 
+std::string encodeJpeg(const std::vector<std::uint8_t>& rgb, int width, int height, int quality) {
+    OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::UINT8);
+    spec.attribute("Compression", fmt::format("jpeg:{}", quality));
+    spec.attribute("jpeg:subsampling", "4:4:4");
+    return encode("jpg", "a JPEG in memory", spec, OIIO::TypeDesc::UINT8, rgb.data());
+}
+
 }  // namespace ulam

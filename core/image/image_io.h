@@ -1,6 +1,7 @@
 #pragma once
 // Image files: the only place that knows OpenImageIO.
 
+#include <cstdint>
 #include <map>
 #include <string>
 #include <utility>
@@ -41,5 +42,9 @@ std::map<std::string, std::string> readImageAttributes(const std::string& path);
 std::string encodePng(const Image& image, double exposure = 0);
 /// The same, written atomically.
 void writePng(const std::string& path, const Image& image, double exposure = 0);
+
+/// The bytes of a JPEG of 8-bit numbers as they are: R, G, B of each pixel, row by row from the top. Quality from 1 to
+/// 100; colours have the resolution of the picture.
+std::string encodeJpeg(const std::vector<std::uint8_t>& rgb, int width, int height, int quality);
 
 }  // namespace ulam

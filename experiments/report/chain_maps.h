@@ -9,7 +9,7 @@
 
 namespace ulam {
 
-/// Edge of the blocks of an R-hat, in blocks of the page's pictures: their pixels' variances are added.
+/// Edge of the blocks of an R-hat, in blocks of the page's maps: their pixels' variances are added.
 inline constexpr int kRhatBlock = 4;
 
 /// R-hat of the luminance of the pixels of each block, with the replicates in place of chains and the first and the

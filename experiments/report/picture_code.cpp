@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <vector>
+
+#include "core/image/image_io.h"
 
 namespace ulam {
 namespace {
@@ -10,6 +13,20 @@ namespace {
 constexpr int kMantissaBits = 9;
 constexpr int kBias = 15;
 constexpr float kLargest = 65408;  // 511 · 2^(31 − 24)
+
+constexpr int kJpegQuality = 90;
+constexpr double kWhiteOverToe = 64;
+constexpr double kLargestOverWhite = 256;
+
+/// The 99th percentile of the pixels' largest channels and the largest of all; that one twice where the first is 0.
+std::pair<double, double> whiteAndLargest(const Image& image) {
+    std::vector<float> values;
+    for (const Rgb& pixel : image.pixels) values.push_back(std::max({pixel.x, pixel.y, pixel.z, 0.0f}));
+    const auto white = values.begin() + std::ptrdiff_t(0.99 * double(values.size() - 1));
+    std::nth_element(values.begin(), white, values.end());
+    const double largest = *std::max_element(white, values.end());
+    return {*white > 0 ? *white : largest, largest};
+}
 
 uint32_t encodePixel(const Rgb& rgb) {
     const auto legal = [](float v) { return v > 0 ? std::min(v, kLargest) : 0.0f; };
@@ -33,6 +50,23 @@ std::string encodeRgb9e5(const Image& image) {
         for (int shift = 0; shift < 32; shift += 8) bytes.push_back(static_cast<char>(word >> shift & 255));
     }
     return bytes;
+}
+
+JpegPicture encodeJpegPicture(const Image& image) {
+    const auto [white, largest] = whiteAndLargest(image);
+    JpegPicture picture;
+    std::vector<std::uint8_t> codes(3 * image.pixels.size());
+    if (largest > 0) {
+        picture.toe = white / kWhiteOverToe;
+        picture.step = std::asinh(std::min(largest, kLargestOverWhite * white) / picture.toe) / 255;
+        auto code = codes.begin();
+        for (const Rgb& pixel : image.pixels)
+            for (int c = 0; c < 3; ++c)
+                *code++ = std::uint8_t(
+                    std::lround(std::clamp(std::asinh(pixel[c] / picture.toe) / picture.step, 0.0, 255.0)));
+    }
+    picture.bytes = encodeJpeg(codes, image.width, image.height, kJpegQuality);
+    return picture;
 }
 
 std::string encodeBase64(std::string_view bytes) {

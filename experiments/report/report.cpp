@@ -77,7 +77,8 @@ std::string makePage(const fs::path& runDir, const Json& summary) {
                        {"results", results},
                        {"pictures", pictures.cells},
                        {"images", pictures.sizes},
-                       {"shrink", pictures.shrink}};
+                       {"shrink", pictures.shrink},
+                       {"exact", pictures.exact}};
     const std::string title = htmlText(summary.value("name", std::string("run")) + " · Ulam");
     const std::string json = scriptSafe(data);
     return fill(page::kTemplate, {{"TITLE", title},

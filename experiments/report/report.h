@@ -10,12 +10,12 @@ namespace ulam {
 
 /// Writes RUN_DIR/report.html from the other files of RUN_DIR (contract: "What a run leaves"). Needed is summary.json;
 /// experiment.json, resolved.json, provenance.json, the cells' r000/result.json and all images are shown where they
-/// exist. Of each cell the page holds the mean over replicates, the median and the worst replicate, the reference, and maps
-/// of how much the replicates scatter and where their mean is not the reference's; the median replicate's images of
-/// techniques and its chains. Where that is more than kReportImageBytes, all images are shrunk until it is not, and of many
-/// cells fewer chains are shown.
-/// Fails with InputMissing without summary.json, InvalidConfig where a file is damaged or the images of a cell differ
-/// in size, CannotWrite where report.html cannot be written.
+/// exist. Of each cell the page holds the mean over replicates, the median and the worst replicate, the reference, and
+/// maps of how much the replicates scatter and where their mean is not the reference's; the median replicate's images
+/// of techniques and its chains. Where that is more than kReportImageBytes, pictures become JPEG, maps have larger
+/// blocks, all are shrunk until they fit, and of many cells fewer chains are shown. Fails with InputMissing without
+/// summary.json, InvalidConfig where a file is damaged or the images of a cell differ in size, CannotWrite where
+/// report.html cannot be written.
 void writeReport(const std::filesystem::path& runDir);
 
 /// The same page as text, of another summary than that of the folder. Errors as above.

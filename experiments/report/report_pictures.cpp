@@ -27,6 +27,9 @@ namespace fs = std::filesystem;
 constexpr double kTechniqueBytes = 4e6;
 constexpr double kChainBytes = 4e6;
 constexpr int kTechniqueEdge = 128;  ///< pixels, of the images of techniques
+/// Share of the rest for maps, where not every pixel has room.
+constexpr double kMapShare = 0.2;
+constexpr int kPicturesOfCell = 3;  ///< mean, median and worst replicate
 
 constexpr double base64Size(double bytes) {
     return bytes * 4 / 3;
@@ -70,6 +73,11 @@ public:
     }
     std::size_t add(const Image& image) {
         return add({{"width", image.width}, {"height", image.height}}, encodeRgb9e5(image));
+    }
+    std::size_t addJpeg(const Image& image) {
+        const JpegPicture picture = encodeJpegPicture(image);
+        return add({{"width", image.width}, {"height", image.height}, {"toe", picture.toe}, {"step", picture.step}},
+                   picture.bytes);
     }
     /// With how much wider and higher its blocks are than the image together.
     std::size_t add(const ByteMap& map, const Image& image) {
@@ -148,17 +156,27 @@ bool hasChains(const CellPlan& plan) {
     return plan.result.is_object() && plan.result.value("traces", Json()).is_object();
 }
 
-/// Bytes of base64 that the pictures and maps of all cells take for a pixel of the film.
-double bytesPerPixel(const std::vector<CellPlan>& plans) {
+std::set<fs::path> referencesOf(const std::vector<CellPlan>& plans) {
     std::set<fs::path> references;
+    for (const CellPlan& plan : plans)
+        if (plan.reference) references.insert(*plan.reference);
+    return references;
+}
+
+/// Bytes of base64 that the pictures of all cells take for a pixel of the film, as RGB9E5.
+double exactPictureBytes(const std::vector<CellPlan>& plans) {
+    const auto cells = std::ranges::count_if(plans, [](const CellPlan& plan) { return !plan.replicates.empty(); });
+    return base64Size(4 * (kPicturesOfCell * double(cells) + double(referencesOf(plans).size())));
+}
+
+/// The same of their maps, of which each has a byte for a block.
+double mapBytes(const std::vector<CellPlan>& plans) {
     double bytes = 0;
     for (const CellPlan& plan : plans) {
-        if (plan.reference) references.insert(*plan.reference);
-        // Four for the mean, the median and the worst replicate, one for each map.
-        if (!plan.replicates.empty()) bytes += 3 * 4 + (plan.reference ? 2 : 1);
+        if (!plan.replicates.empty()) bytes += plan.reference ? 2 : 1;
         if (hasChains(plan)) bytes += 1 + 1.0 / (kRhatBlock * kRhatBlock);
     }
-    return base64Size(bytes + 4 * double(references.size()));
+    return base64Size(bytes);
 }
 
 /// The smallest factor by whose square the bytes must be divided to be at most `most`.
@@ -166,6 +184,35 @@ int shrinkFactor(double bytes, double most) {
     int factor = 1;
     while (bytes / (double(factor) * factor) > most) ++factor;
     return factor;
+}
+
+/// Whether the pictures of all cells, shrunk and as JPEG, fit; those of a cell are taken to be as long as its median
+/// replicate's.
+bool jpegsFit(const std::vector<CellPlan>& plans, int factor, double most) {
+    std::set<fs::path> references;
+    for (const CellPlan& plan : plans) {
+        if (plan.replicates.empty()) continue;
+        const Image image = shrink(readImage((plan.folder() / "image.exr").string()), factor);
+        const bool withReference = plan.reference && references.insert(*plan.reference).second;
+        most -= base64Size(double(encodeJpegPicture(image).bytes.size())) * (kPicturesOfCell + (withReference ? 1 : 0));
+        if (most < 0) return false;
+    }
+    return true;
+}
+
+/// How much the images of the cells are shrunk.
+struct Sizes {
+    bool exact = true;           ///< RGB9E5, not JPEG
+    int pictures = 1, maps = 1;  ///< edges of the blocks of pixels that became one
+};
+
+Sizes chooseSizes(const std::vector<CellPlan>& plans, double pixels, double most) {
+    const double bytesOfMaps = pixels * mapBytes(plans);
+    if (pixels * exactPictureBytes(plans) + bytesOfMaps <= most) return {};
+    Sizes sizes{.exact = false, .pictures = 1, .maps = shrinkFactor(bytesOfMaps, kMapShare * most)};
+    const double left = most - bytesOfMaps / (double(sizes.maps) * sizes.maps);
+    while (sizes.pictures * sizes.pictures < pixels && !jpegsFit(plans, sizes.pictures, left)) ++sizes.pictures;
+    return sizes;
 }
 
 class Gatherer {
@@ -188,14 +235,15 @@ public:
         if (chains > 0) chainShare_ = kChainBytes / chains;
         const double others =
             techniqueBytes / (double(techniqueFactor_) * techniqueFactor_) + std::min(chainBytes, kChainBytes);
-        factor_ = shrinkFactor(pixels * bytesPerPixel(plans_), kReportImageBytes - others);
+        sizes_ = chooseSizes(plans_, pixels, kReportImageBytes - others);
 
         PagePictures page;
         page.cells = Json::object();
         for (const CellPlan& plan : plans_) page.cells[plan.cell] = embed(plan);
         page.sizes = std::move(elements_.sizes);
         page.elements = std::move(elements_.text);
-        page.shrink = factor_;
+        page.shrink = sizes_.pictures;
+        page.exact = sizes_.exact;
         return page;
     }
 
@@ -203,7 +251,12 @@ private:
     std::size_t addFile(const fs::path& file) {
         const auto known = files_.find(file);
         if (known != files_.end()) return known->second;
-        return files_[file] = elements_.add(shrink(readImage(file.string()), factor_));
+        return files_[file] = addPicture(readImage(file.string()));
+    }
+
+    std::size_t addPicture(const Image& image) {
+        const Image small = shrink(image, sizes_.pictures);
+        return sizes_.exact ? elements_.add(small) : elements_.addJpeg(small);
     }
 
     Json embed(const CellPlan& plan) {
@@ -223,13 +276,14 @@ private:
     void embedMaps(const CellPlan& plan, Json& ids) {
         std::vector<fs::path> folders, files;
         for (const auto& [replicate, folder] : plan.replicates) folders.push_back(folder), files.push_back(folder / "image.exr");
-        const ReplicateMaps maps = mapReplicates(files, referenceOf(plan), factor_);
-        ids["mean"] = elements_.add(shrink(maps.mean, factor_));
+        const ReplicateMaps maps = mapReplicates(files, referenceOf(plan), sizes_.maps);
+        ids["mean"] = addPicture(maps.mean);
         if (files.size() > 1) ids["deviation"] = elements_.add(maps.deviation, maps.mean);
         if (maps.tests) ids["tests"] = elements_.add(*maps.tests, maps.mean);
         if (!hasChains(plan)) return;
-        if (const auto rhat = mapRhat(folders, factor_)) ids["rhat"] = elements_.add(*rhat, maps.mean);
-        if (const auto acceptance = mapAcceptance(folders, factor_)) ids["acceptance"] = elements_.add(*acceptance, maps.mean);
+        if (const auto rhat = mapRhat(folders, sizes_.maps)) ids["rhat"] = elements_.add(*rhat, maps.mean);
+        if (const auto acceptance = mapAcceptance(folders, sizes_.maps))
+            ids["acceptance"] = elements_.add(*acceptance, maps.mean);
     }
 
     /// Null where the variance of its pixels is not known. Cells that share a reference follow each other: one is kept.
@@ -272,7 +326,8 @@ private:
     }
 
     std::vector<CellPlan> plans_;
-    int factor_ = 1, techniqueFactor_ = 1;
+    Sizes sizes_;
+    int techniqueFactor_ = 1;
     double chainShare_ = 0;  ///< bytes for the chains of one cell
     fs::path referenceFolder_;
     MapReference reference_;

@@ -13,6 +13,7 @@ struct PagePictures {
     Json sizes;            ///< by number: width, height, and how a map lies on its image
     std::string elements;  ///< HTML: one element for each number, with base64
     int shrink = 1;        ///< edge of the blocks of pixels that became one
+    bool exact = true;     ///< all pictures are RGB9E5; else those of replicates and references are JPEG
 };
 
 /// Null where there is no such file.

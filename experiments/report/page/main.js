@@ -53,7 +53,8 @@ function render() {
             el("nav", { "aria-label": "sections" }, links),
             el("main", { "aria-busy": "true" }, ...[alarmBox()].filter(Boolean), ...sections),
         );
-    setTimeout(() => makeWaiting(() => document.querySelector("main").removeAttribute("aria-busy")));
+    const done = () => document.querySelector("main").removeAttribute("aria-busy");
+    setTimeout(() => decodeJpegs().then(() => makeWaiting(done)));
 }
 
 render();

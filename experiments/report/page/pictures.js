@@ -1,4 +1,5 @@
-// HDR pictures in the page: base64 of RGB9E5 (three 9-bit mantissas, one 5-bit exponent, little-endian; value = m · 2^(e − 24)).
+// HDR pictures in the page: base64 of RGB9E5 (three 9-bit mantissas, one 5-bit exponent, little-endian; value = m · 2^(e − 24)),
+// or of a JPEG of codes (value = toe · sinh(step · code)).
 
 const kErrorRange = [0.01, 10]; // of the false colours, relative error
 const kRelativeEpsilon = 0.01; // added to r², as in relMSE
@@ -15,8 +16,34 @@ class Picture {
         this.canvas.height = this.height;
     }
 
+    get isJpeg() {
+        return this.toe !== undefined;
+    }
+
+    /// A browser decodes a JPEG beside other work: `rgb` is there when it has.
+    async decodeJpeg() {
+        const jpeg = new Blob([embeddedBytes(this.id)], { type: "image/jpeg" }),
+            bitmap = await createImageBitmap(jpeg, { colorSpaceConversion: "none" }),
+            context = new OffscreenCanvas(this.width, this.height).getContext("2d");
+        context.drawImage(bitmap, 0, 0);
+        bitmap.close();
+        this.codes = context.getImageData(0, 0, this.width, this.height).data;
+    }
+
     get rgb() {
-        if (this.decoded) return this.decoded;
+        return (this.decoded ??= this.isJpeg ? this.decodeCodes() : this.decodeRgb9e5());
+    }
+
+    decodeCodes() {
+        const values = Float32Array.from({ length: 256 }, (_, code) => this.toe * Math.sinh(this.step * code));
+        const out = new Float32Array(3 * this.width * this.height);
+        for (let i = 0, j = 0; j < out.length; i += 4, j += 3)
+            for (let c = 0; c < 3; ++c) out[j + c] = values[this.codes[i + c]];
+        this.codes = null;
+        return out;
+    }
+
+    decodeRgb9e5() {
         const bytes = embeddedBytes(this.id);
         const scale = Array.from({ length: 32 }, (_, e) => 2 ** (e - 24));
         const out = new Float32Array(3 * this.width * this.height);
@@ -27,7 +54,7 @@ class Picture {
             out[j + 1] = ((word >>> 9) & 511) * unit;
             out[j + 2] = ((word >>> 18) & 511) * unit;
         }
-        return (this.decoded = out);
+        return out;
     }
 
     /// Relative error of pixel i: √ of the mean over channels of (x − r)² / (r² + ε).
@@ -132,6 +159,12 @@ function picture(id) {
     if (!pictureCache.has(id)) pictureCache.set(id, new Picture(id));
     return pictureCache.get(id);
 }
+
+/// Before what shows pictures is made.
+const decodeJpegs = () =>
+    Promise.all(
+        data.images.map((image, id) => (image.toe === undefined || picture(id).codes !== undefined ? null : picture(id).decodeJpeg())),
+    );
 
 const blockMapCache = new Map();
 function blockMap(id, colour) {

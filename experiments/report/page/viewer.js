@@ -371,7 +371,9 @@ function imagesSection() {
         "images",
         "Images",
         "Reference, one run, and the mean over runs of each sampler; zoom, pan and exposure are common to all." +
-            (data.shrink > 1 ? ` Shown at 1∕${data.shrink} of their size to keep the page small.` : ""),
+            (data.exact === false
+                ? ` To keep the page small they are JPEG${data.shrink > 1 ? ` at 1∕${data.shrink} of their size` : ""}: values of pixels are some per cent off.`
+                : ""),
         shown.map((group) =>
             el(
                 "div",

@@ -4,10 +4,10 @@
 Without an argument the report is that of the made-up run of report_test.cpp, whose program lies beside $ULAM.
 """
 
-import base64
 import copy
 import functools
 import json
+import math
 import pathlib
 import re
 import sys
@@ -395,15 +395,48 @@ def survives_missing_data(browser, page):
             )
 
 
-def large_run(page, path):
+def jpeg(browser, width, height, code):
+    """Base64 of a JPEG; `code` is JavaScript for the code of channel c of any pixel."""
+    return browser.run(
+        f"""const canvas = Object.assign(document.createElement('canvas'), {{ width: {width}, height: {height} }});
+        const pixels = new ImageData({width}, {height});
+        pixels.data.forEach((_, i) => {{ const c = i % 4; pixels.data[i] = c === 3 ? 255 : {code}; }});
+        canvas.getContext('2d').putImageData(pixels, 0, 0);
+        return canvas.toDataURL('image/jpeg', 0.9).split(',')[1]"""
+    )
+
+
+def reads_jpegs(browser, page):
+    """Codes become values: toe · sinh(step · code)."""
+    data, text = data_of(page), jpeg(browser, 128, 128, "[100, 150, 200][c]")
+    ids = data["pictures"]["hidden-bdpt"]
+    data["images"].append({"width": 128, "height": 128, "toe": 0.01, "step": 0.03})
+    ids["median"] = len(data["images"]) - 1
+    data["exact"] = False
+    element = f'<script type="text/plain" id="image-{ids["median"]}">{text}</script>'
+    with tempfile.TemporaryDirectory() as folder:
+        browser.open(with_data(page, data, pathlib.Path(folder) / "report.html", element))
+    browser.press("2")
+    browser.drag(STAGE, 5, 5)
+    readout = browser.run("return document.querySelector(`${arguments[0]} .readout`).textContent", VIEWER)
+    values = [float(value) for value in re.match(r"pixel \d+, \d+: ([\d., ]+)", readout)[1].rstrip(" ,").split(", ")]
+    expected = [0.01 * math.sinh(0.03 * code) for code in (100, 150, 200)]
+    check(all(abs(x / y - 1) < 0.04 for x, y in zip(values, expected, strict=True)), f"{readout}, not {expected}")
+    lead = browser.run("return document.querySelector('#images .lead').textContent")
+    check("JPEG" in lead, f"the images' lead says '{lead}'")
+    said = complaints(browser)
+    check(not said, f"the console says {said}")
+
+
+def large_run(browser, page, path):
     """Eight samplers on eight scenes with as many pixels as the largest page holds: every cell a copy of one of three."""
-    data, width, height = data_of(page), 176, 100
+    data, width, height = data_of(page), 427, 240
     known = {cell["cell"]: cell for cell in data["summary"]["cells"] if cell["scene"] == "hidden"}
     cells, pictures, elements = [], {}, []
-    text = base64.b64encode(bytes(range(256)) * (width * height // 64)).decode()
+    text = jpeg(browser, width, height, "100 + 110 * Math.random()")
 
     def element():
-        data["images"].append({"width": width, "height": height})
+        data["images"].append({"width": width, "height": height, "toe": 0.01, "step": 0.03})
         elements.append(f'<script type="text/plain" id="image-{len(data["images"]) - 1}">{text}</script>')
         return len(data["images"]) - 1
 
@@ -426,7 +459,7 @@ def large_run(page, path):
 def opens_a_large_run(browser, page):
     """It can be used after two seconds of the processor, and everything is made in the end."""
     with tempfile.TemporaryDirectory() as folder:
-        large = large_run(page, pathlib.Path(folder) / "report.html")
+        large = large_run(browser, page, pathlib.Path(folder) / "report.html")
         check(large.stat().st_size > 20e6, f"only {large.stat().st_size} bytes")
         time_domain = {"timeDomain": "threadTicks"}  # not the clock's: other programs run beside the test
         browser.call("POST", "/goog/cdp/execute", {"cmd": "Performance.enable", "params": time_domain})
@@ -465,7 +498,7 @@ def test_page(page):
         follows_the_colour_scheme,
         names_every_control,
     ]
-    on_other_pages = [functools.partial(test, page=page) for test in (survives_missing_data, opens_a_large_run)]
+    on_other_pages = [functools.partial(test, page=page) for test in (survives_missing_data, reads_jpegs, opens_a_large_run)]
     return run_tests([*tests, *on_other_pages], lambda browser: browser.open(page))
 
 

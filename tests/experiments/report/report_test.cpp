@@ -144,16 +144,94 @@ TEST_CASE("images of techniques are read by their names, in pairs and small") {
     CHECK(countOf(page, R"({"width":100,"height":100})") == 2);
 }
 
-TEST_CASE("images too large for one page are halved until they fit") {
+namespace {
+
+/// The page of one cell with one replicate.
+std::string pageOf(const Image& image) {
     RunFolder folder;
     fs::create_directories(folder.path / "cells/a/r000");
-    writeExr((folder.path / "cells/a/r000/image.exr").string(), Image(1500, 1200, Rgb(1)));
+    writeExr((folder.path / "cells/a/r000/image.exr").string(), image);
     writeFileAtomically(folder.path / "summary.json", R"({"cells": [{"cell": "a", "scene": "s", "sampler": "x"}]})");
     writeReport(folder.path);
-    const std::string page = readFile(folder.path / "report.html");
-    CHECK(double(page.size()) < kReportImageBytes);
-    CHECK(page.find(R"("width":750,"height":600)") != page.npos);
-    CHECK(page.find(R"("shrink":2)") != page.npos);
+    return readFile(folder.path / "report.html");
+}
+
+/// Brightness over 2^24, colours, and noise of the given logarithmic standard deviation.
+Image noisyRamp(int width, int height, double sigma) {
+    std::mt19937 random(3);
+    std::normal_distribution<double> normal(-sigma * sigma / 2, sigma);
+    Image image(width, height);
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x)
+            image.at(x, y) = Rgb(1, 0.5f, 0.25f) * float(std::exp2(12.0 * x / width - 9) * std::exp(normal(random)));
+    return image;
+}
+
+Image decodeJpeg(const JpegPicture& picture) {
+    RunFolder folder;
+    const std::string file = (folder.path / "picture.jpg").string();
+    writeFileAtomically(file, picture.bytes);
+    Image image = readImage(file, Encoding::Raw);
+    for (Rgb& pixel : image.pixels)
+        for (int c = 0; c < 3; ++c) pixel[c] = float(picture.toe * std::sinh(picture.step * 255 * pixel[c]));
+    return image;
+}
+
+double meanOf(const Image& image) {
+    double total = 0;
+    for (const Rgb& pixel : image.pixels) total += luminance(Spectrum(pixel));
+    return total / double(image.pixels.size());
+}
+
+/// Root of the mean square over pixels of (luminance of a − of b) / b; where b is dark, of the toe.
+double relativeDifference(const Image& a, const Image& b) {
+    const double toe = 8.0 / 64;
+    double total = 0;
+    for (std::size_t i = 0; i < a.pixels.size(); ++i) {
+        const double x = luminance(Spectrum(a.pixels[i])), y = luminance(Spectrum(b.pixels[i]));
+        total += (x - y) * (x - y) / (y * y + toe * toe) / double(a.pixels.size());
+    }
+    return std::sqrt(total);
+}
+
+}  // namespace
+
+TEST_CASE("a JPEG picture keeps values, and the amount of noise") {
+    const Image smooth = noisyRamp(256, 128, 0);
+    CHECK(relativeDifference(decodeJpeg(encodeJpegPicture(smooth)), smooth) < 0.03);
+    const Image noisy = noisyRamp(256, 128, 0.5), decoded = decodeJpeg(encodeJpegPicture(noisy));
+    CHECK(meanOf(decoded) == Approx(meanOf(noisy)).epsilon(0.02));
+    const double noise = relativeDifference(noisy, smooth);
+    CHECK(relativeDifference(decoded, noisy) < 0.25 * noise);
+    CHECK(relativeDifference(decoded, smooth) == Approx(noise).epsilon(0.05));
+}
+
+TEST_CASE("a JPEG picture at its edges") {
+    CHECK(decodeJpeg(encodeJpegPicture(Image(16, 16))) == Image(16, 16));
+    CHECK(decodeJpeg(encodeJpegPicture(Image(16, 16, Rgb(-1)))) == Image(16, 16));
+    Image firefly(64, 64, Rgb(1));
+    firefly.at(32, 32) = Rgb(1e6f);
+    const Image decoded = decodeJpeg(encodeJpegPicture(firefly));
+    CHECK(decoded.at(0, 0).x == Approx(1).epsilon(0.03));
+    CHECK(decoded.at(32, 32).x == Approx(256).epsilon(0.3));
+}
+
+TEST_CASE("images too large for one page become JPEG, and shrink where that is not enough") {
+    const std::string exact = pageOf(Image(700, 600, Rgb(1)));
+    CHECK(exact.find(R"("shrink":1,"exact":true)") != exact.npos);
+    const std::string jpeg = pageOf(Image(1500, 1200, Rgb(1)));
+    CHECK(jpeg.find(R"("width":1500,"height":1200,"toe":)") != jpeg.npos);
+    CHECK(jpeg.find(R"("shrink":1,"exact":false)") != jpeg.npos);
+    std::mt19937 random(5);
+    Image noise(3200, 2000);
+    for (Rgb& pixel : noise.pixels)
+        for (int c = 0; c < 3; ++c) pixel[c] = std::ldexp(1.0f, int(random() % 8));
+    const std::string small = pageOf(noise);
+    CHECK(small.find(R"("width":1600,"height":1000,"toe":)") != small.npos);
+    CHECK(small.find(R"("shrink":2,"exact":false)") != small.npos);
+    CHECK(double(small.size()) < kReportImageBytes);
+    CHECK(double(small.size()) >
+          kReportImageBytes / 8);  // of the room no more is left than a factor of 2 and maps explain
 }
 
 TEST_CASE("a report needs a summary and nothing else") {
