@@ -5,8 +5,8 @@
 
 #include "core/base/error.h"
 #include "core/image/image_io.h"
+#include "experiments/report/cell_plan.h"
 #include "experiments/report/picture_code.h"
-#include "experiments/report/report_pictures.h"
 
 namespace ulam {
 namespace {

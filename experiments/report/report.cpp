@@ -8,6 +8,7 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/config/json.h"
+#include "experiments/report/cell_plan.h"
 #include "experiments/report/page.h"
 #include "experiments/report/report_pictures.h"
 

@@ -2,65 +2,23 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <charconv>
 #include <limits>
 #include <map>
-#include <optional>
-#include <set>
 #include <string_view>
 #include <vector>
 
 #include "core/image/image_io.h"
+#include "experiments/report/cell_plan.h"
 #include "experiments/report/chain_data.h"
 #include "experiments/report/chain_maps.h"
+#include "experiments/report/page_sizes.h"
 #include "experiments/report/picture_code.h"
 #include "experiments/report/replicate_maps.h"
-#include "experiments/report/report.h"
 
 namespace ulam {
 namespace {
 
 namespace fs = std::filesystem;
-
-// Shares of kReportImageBytes for what is the same size whatever the film is.
-constexpr double kTechniqueBytes = 4e6;
-constexpr double kChainBytes = 4e6;
-constexpr int kTechniqueEdge = 128;  ///< pixels, of the images of techniques
-/// Share of the rest for maps, where not every pixel has room.
-constexpr double kMapShare = 0.2;
-constexpr int kPicturesOfCell = 3;  ///< mean, median and worst replicate
-
-constexpr double base64Size(double bytes) {
-    return bytes * 4 / 3;
-}
-
-/// The folders of a cell's replicates that left an image, by number.
-std::map<std::size_t, fs::path> replicateFolders(const fs::path& cellFolder) {
-    std::map<std::size_t, fs::path> folders;
-    if (!fs::exists(cellFolder)) return folders;
-    for (const fs::directory_entry& entry : fs::directory_iterator(cellFolder)) {
-        const std::string name = entry.path().filename().string();
-        std::size_t replicate = 0;
-        const char* const end = name.data() + name.size();
-        const bool numbered = name.starts_with('r') && std::from_chars(name.data() + 1, end, replicate).ptr == end;
-        if (numbered && fs::exists(entry.path() / "image.exr")) folders.emplace(replicate, entry.path());
-    }
-    return folders;
-}
-
-/// The replicate the summary names, or else the one of this rank (0 … 1) in the primary metric, or else the first.
-std::size_t chooseReplicate(const Json& cell, const char* name, double rank, const std::string& metric) {
-    if (const auto named = cell.find(name); named != cell.end() && named->is_number_unsigned())
-        return named->get<std::size_t>();
-    const Json values = cell.value(Json::json_pointer("/metrics/" + metric + "/values"), Json::array());
-    std::vector<std::pair<double, std::size_t>> sorted;
-    for (std::size_t r = 0; r < values.size(); ++r)
-        if (values[r].is_number()) sorted.emplace_back(values[r].get<double>(), r);
-    if (sorted.empty()) return 0;
-    std::sort(sorted.begin(), sorted.end());
-    return sorted[static_cast<std::size_t>(rank * double(sorted.size() - 1))].second;
-}
 
 /// Elements of the page, numbered: texts of their own, so that the browser parses only what it shows.
 class Elements {
@@ -94,149 +52,11 @@ public:
     std::string text;
 };
 
-/// What a cell shows, before its images are read.
-struct CellPlan {
-    std::string cell;
-    std::map<std::size_t, fs::path> replicates;  ///< folders
-    std::size_t median = 0, worst = 0;
-    std::optional<fs::path> reference;
-    std::vector<std::pair<int, int>> techniques;  ///< (s, t) with images in the median replicate's extra/
-    Json result;                                  ///< the median replicate's result.json
-
-    fs::path folder() const { return replicates.at(median); }
-};
-
-fs::path techniqueFile(const fs::path& replicate, std::pair<int, int> technique, std::string_view kind) {
-    return replicate / "extra" / fmt::format("s{:02}_t{:02}_{}.exr", technique.first, technique.second, kind);
-}
-
-std::vector<std::pair<int, int>> techniquesIn(const fs::path& replicate) {
-    std::vector<std::pair<int, int>> found;
-    if (!fs::exists(replicate / "extra")) return found;
-    for (const fs::directory_entry& entry : fs::directory_iterator(replicate / "extra")) {
-        const std::string name = entry.path().filename().string();
-        if (name.size() < 7 || name[0] != 's' || !name.ends_with("_weighted.exr")) continue;
-        int s = 0, t = 0;
-        const char* const end = name.data() + name.size();
-        const auto read = std::from_chars(name.data() + 1, end, s);
-        if (read.ec != std::errc() || end - read.ptr < 3 || std::from_chars(read.ptr + 2, end, t).ec != std::errc())
-            continue;
-        if (fs::exists(techniqueFile(replicate, {s, t}, "unweighted"))) found.emplace_back(s, t);
-    }
-    std::ranges::sort(found);
-    return found;
-}
-
-CellPlan planCell(const fs::path& runDir, const Json& cell, const std::string& metric) {
-    CellPlan plan;
-    plan.cell = cell.at("cell").get<std::string>();
-    plan.replicates = replicateFolders(runDir / "cells" / plan.cell);
-    const auto there = [&](std::size_t replicate) {
-        return plan.replicates.empty() || plan.replicates.contains(replicate) ? replicate
-                                                                              : plan.replicates.begin()->first;
-    };
-    plan.median = there(chooseReplicate(cell, "median_replicate", 0.5, metric));
-    plan.worst = there(chooseReplicate(cell, "worst_replicate", 1, metric));
-    const std::string reference = cell.value("reference_image", std::string());
-    if (!reference.empty() && fs::exists(runDir / reference)) plan.reference = runDir / reference;
-    if (plan.replicates.empty()) return plan;
-    plan.techniques = techniquesIn(plan.folder());
-    plan.result = readJsonIfThere(plan.folder() / "result.json");
-    return plan;
-}
-
-/// The film is the experiment's, so one image tells the size of all.
-double pixelsOf(const std::vector<CellPlan>& plans) {
-    for (const CellPlan& plan : plans)
-        if (!plan.replicates.empty()) return double(readImage((plan.folder() / "image.exr").string()).pixels.size());
-    return 0;
-}
-
-bool hasChains(const CellPlan& plan) {
-    return plan.result.is_object() && plan.result.value("traces", Json()).is_object();
-}
-
-std::set<fs::path> referencesOf(const std::vector<CellPlan>& plans) {
-    std::set<fs::path> references;
-    for (const CellPlan& plan : plans)
-        if (plan.reference) references.insert(*plan.reference);
-    return references;
-}
-
-/// Bytes of base64 that the pictures of all cells take for a pixel of the film, as RGB9E5.
-double exactPictureBytes(const std::vector<CellPlan>& plans) {
-    const auto cells = std::ranges::count_if(plans, [](const CellPlan& plan) { return !plan.replicates.empty(); });
-    return base64Size(4 * (kPicturesOfCell * double(cells) + double(referencesOf(plans).size())));
-}
-
-/// The same of their maps, of which each has a byte for a block.
-double mapBytes(const std::vector<CellPlan>& plans) {
-    double bytes = 0;
-    for (const CellPlan& plan : plans) {
-        if (!plan.replicates.empty()) bytes += plan.reference ? 2 : 1;
-        if (hasChains(plan)) bytes += 1 + 1.0 / (kRhatBlock * kRhatBlock);
-    }
-    return base64Size(bytes);
-}
-
-/// The smallest factor by whose square the bytes must be divided to be at most `most`.
-int shrinkFactor(double bytes, double most) {
-    int factor = 1;
-    while (bytes / (double(factor) * factor) > most) ++factor;
-    return factor;
-}
-
-/// Whether the pictures of all cells, shrunk and as JPEG, fit; those of a cell are taken to be as long as its median
-/// replicate's.
-bool jpegsFit(const std::vector<CellPlan>& plans, int factor, double most) {
-    std::set<fs::path> references;
-    for (const CellPlan& plan : plans) {
-        if (plan.replicates.empty()) continue;
-        const Image image = shrink(readImage((plan.folder() / "image.exr").string()), factor);
-        const bool withReference = plan.reference && references.insert(*plan.reference).second;
-        most -= base64Size(double(encodeJpegPicture(image).bytes.size())) * (kPicturesOfCell + (withReference ? 1 : 0));
-        if (most < 0) return false;
-    }
-    return true;
-}
-
-/// How much the images of the cells are shrunk.
-struct Sizes {
-    bool exact = true;           ///< RGB9E5, not JPEG
-    int pictures = 1, maps = 1;  ///< edges of the blocks of pixels that became one
-};
-
-Sizes chooseSizes(const std::vector<CellPlan>& plans, double pixels, double most) {
-    const double bytesOfMaps = pixels * mapBytes(plans);
-    if (pixels * exactPictureBytes(plans) + bytesOfMaps <= most) return {};
-    Sizes sizes{.exact = false, .pictures = 1, .maps = shrinkFactor(bytesOfMaps, kMapShare * most)};
-    const double left = most - bytesOfMaps / (double(sizes.maps) * sizes.maps);
-    while (sizes.pictures * sizes.pictures < pixels && !jpegsFit(plans, sizes.pictures, left)) ++sizes.pictures;
-    return sizes;
-}
-
 class Gatherer {
 public:
-    Gatherer(std::vector<CellPlan> plans) : plans_(std::move(plans)) {}
+    Gatherer(std::vector<CellPlan> plans) : plans_(std::move(plans)), sizes_(choosePageSizes(plans_)) {}
 
     PagePictures gather() {
-        const double pixels = pixelsOf(plans_);
-        double techniques = 0, chains = 0, chainBytes = 0;
-        for (const CellPlan& plan : plans_) {
-            techniques += 2 * double(plan.techniques.size());
-            if (!hasChains(plan)) continue;
-            ++chains;
-            const Json& traces = plan.result["traces"];
-            chainBytes += base64Size(kDrawBytes * traces.at("chains").get<double>() * traces.at("draws").get<double>());
-        }
-        const double techniqueBytes = base64Size(4 * techniques * pixels);
-        techniqueFactor_ = std::max(shrinkFactor(techniqueBytes, kTechniqueBytes),
-                                    shrinkFactor(pixels, double(kTechniqueEdge) * kTechniqueEdge));
-        if (chains > 0) chainShare_ = kChainBytes / chains;
-        const double others =
-            techniqueBytes / (double(techniqueFactor_) * techniqueFactor_) + std::min(chainBytes, kChainBytes);
-        sizes_ = chooseSizes(plans_, pixels, kReportImageBytes - others);
-
         PagePictures page;
         page.cells = Json::object();
         for (const CellPlan& plan : plans_) page.cells[plan.cell] = embed(plan);
@@ -280,7 +100,7 @@ private:
         ids["mean"] = addPicture(maps.mean);
         if (files.size() > 1) ids["deviation"] = elements_.add(maps.deviation, maps.mean);
         if (maps.tests) ids["tests"] = elements_.add(*maps.tests, maps.mean);
-        if (!hasChains(plan)) return;
+        if (!plan.hasChains()) return;
         if (const auto rhat = mapRhat(folders, sizes_.maps)) ids["rhat"] = elements_.add(*rhat, maps.mean);
         if (const auto acceptance = mapAcceptance(folders, sizes_.maps))
             ids["acceptance"] = elements_.add(*acceptance, maps.mean);
@@ -306,15 +126,15 @@ private:
             Json entry = {{"s", technique.first}, {"t", technique.second}};
             for (const char* kind : {"weighted", "unweighted"})
                 entry[kind] = elements_.add(
-                    shrink(readImage(techniqueFile(plan.folder(), technique, kind).string()), techniqueFactor_));
+                    shrink(readImage(techniqueFile(plan.folder(), technique, kind).string()), sizes_.techniques));
             ids["techniques"].push_back(entry);
         }
     }
 
     void embedChains(const CellPlan& plan, Json& ids) {
-        if (!hasChains(plan)) return;
+        if (!plan.hasChains()) return;
         const double draws = plan.result["traces"].at("draws").get<double>();
-        const int most = int(chainShare_ / base64Size(kDrawBytes * std::max(1.0, draws)));
+        const int most = int(sizes_.chainBytes / base64Size(kDrawBytes * std::max(1.0, draws)));
         auto chains = readChainData(plan.folder(), plan.result, most);
         if (!chains) return;
         ids["chains"] = std::move(chains->fields);
@@ -326,9 +146,7 @@ private:
     }
 
     std::vector<CellPlan> plans_;
-    Sizes sizes_;
-    int techniqueFactor_ = 1;
-    double chainShare_ = 0;  ///< bytes for the chains of one cell
+    PageSizes sizes_;
     fs::path referenceFolder_;
     MapReference reference_;
     Elements elements_;
@@ -336,10 +154,6 @@ private:
 };
 
 }  // namespace
-
-Json readJsonIfThere(const fs::path& path) {
-    return fs::exists(path) ? JsonDocument::fromFile(path).json() : Json();
-}
 
 PagePictures gatherPictures(const fs::path& runDir, const Json& cells, const std::string& metric) {
     std::vector<CellPlan> plans;

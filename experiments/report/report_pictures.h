@@ -16,9 +16,6 @@ struct PagePictures {
     bool exact = true;     ///< all pictures are RGB9E5; else those of replicates and references are JPEG
 };
 
-/// Null where there is no such file.
-Json readJsonIfThere(const std::filesystem::path& path);
-
 /// Of the cells of summary.json, from the files below RUN_DIR; what is not there is left out. `metric` is the primary
 /// one.
 PagePictures gatherPictures(const std::filesystem::path& runDir, const Json& cells, const std::string& metric);
