@@ -4,8 +4,12 @@
 const kErrorRange = [0.01, 10]; // of the false colours, relative error
 const kRelativeEpsilon = 0.01; // added to r², as in relMSE
 
-const embeddedBytes = (id) =>
-    Uint8Array.from(atob(document.getElementById(`image-${id}`).textContent), (c) => c.charCodeAt(0));
+function embeddedBytes(id) {
+    const text = atob(document.getElementById(`image-${id}`).textContent),
+        bytes = new Uint8Array(text.length);
+    for (let i = 0; i < bytes.length; ++i) bytes[i] = text.charCodeAt(i);
+    return bytes;
+}
 
 class Picture {
     constructor(id) {
@@ -24,7 +28,7 @@ class Picture {
     async decodeJpeg() {
         const jpeg = new Blob([embeddedBytes(this.id)], { type: "image/jpeg" }),
             bitmap = await createImageBitmap(jpeg, { colorSpaceConversion: "none" }),
-            context = new OffscreenCanvas(this.width, this.height).getContext("2d");
+            context = new OffscreenCanvas(this.width, this.height).getContext("2d", { willReadFrequently: true });
         context.drawImage(bitmap, 0, 0);
         bitmap.close();
         this.codes = context.getImageData(0, 0, this.width, this.height).data;
@@ -175,10 +179,10 @@ function blockMap(id, colour) {
 
 /// The exposure, in half stops, that puts the 99th percentile of the picture just below white.
 function fittingExposure(image) {
-    const values = [];
-    for (let i = 0; i < image.rgb.length; i += 3)
-        values.push(Math.max(image.rgb[i], image.rgb[i + 1], image.rgb[i + 2]));
-    values.sort((a, b) => a - b);
+    const { rgb } = image,
+        values = new Float32Array(rgb.length / 3);
+    for (let i = 0, j = 0; i < values.length; ++i, j += 3) values[i] = Math.max(rgb[j], rgb[j + 1], rgb[j + 2]);
+    values.sort();
     const bright = values[Math.floor(0.99 * (values.length - 1))];
     return bright > 0 ? clamp(Math.floor(-2 * Math.log2(bright)) / 2, -12, 12) : 0;
 }
