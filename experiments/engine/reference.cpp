@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 constexpr const char* kFiles[] = {"image.exr", "variance.exr", "result.json"};
 
 void write(const PlannedReference& reference, const fs::path& folder, const Image& image, const Image& variance,
-           Json result) {
+           const Json& result) {
     makeFolder(folder);
     const ImageAttributes attributes = {{"ulam:version", programVersion()},
                                         {"ulam:scene", reference.scene->name},

@@ -121,9 +121,10 @@ std::string tileMap(const std::vector<double>& p, size_t across, const std::stri
     const size_t tiles = p.size() / size_t(channels), down = (tiles + across - 1) / across;
     std::string squares = fmt::format("<rect class=\"ground\" x=\"0\" y=\"0\" width=\"{}\" height=\"{}\"/>", size * double(across), size * double(down));
     for (size_t t = 0; t < tiles; ++t) {
+        const size_t column = t % across, row = t / across;
         const double least = std::max(1e-12, *std::min_element(p.begin() + std::ptrdiff_t(3 * t), p.begin() + std::ptrdiff_t(3 * t + 3)));
         squares += fmt::format("<rect class=\"tile\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" opacity=\"{:.2f}\"><title>p = {:.3g}</title></rect>",
-                               size * double(t % across), size * double(t / across), size - 1, size - 1, std::min(1.0, -std::log10(least) / 8), least);
+                               size * double(column), size * double(row), size - 1, size - 1, std::min(1.0, -std::log10(least) / 8), least);
     }
     return figure(squares, 150, int(size * double(down)), caption);
 }
