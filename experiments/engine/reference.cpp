@@ -283,9 +283,8 @@ void finishReference(const PlannedReference& reference, const fs::path& runDir) 
         if (!finished) fail(ExitCode::InputMissing, "part {} of {} is lost: {}", part + 1, reference.key, damage);
         if (const auto pixels = finished->result.value("unsampled_pixels", 0); pixels > 0)
             fail(ExitCode::InvalidConfig,
-                 "{} pixels have no sample in part {} of the reference of scene {}: the budget of a reference is that "
-                 "of "
-                 "all its {} parts together; raise it",
+                 "{} pixels have no sample in part {} of the reference of scene {}: the budget of a reference is "
+                 "that of all its {} parts together; raise it",
                  pixels, part + 1, reference.scene->name, reference.task.replicates);
         own.push_back(std::move(finished->result));
         images.push_back(std::move(finished->image));

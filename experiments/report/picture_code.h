@@ -20,8 +20,8 @@ struct JpegPicture {
     double toe = 1, step = 0;
 };
 
-/// A tenth of RGB9E5 or less. Codes are a few per cent apart; a JPEG of quality 90 adds some more where noise is
-/// strong, and leaves its amount as it is. Values beyond 256 times the 99th percentile of the pixels' largest channels
+/// Codes are a few per cent apart; a JPEG of quality 90 adds some more where noise is strong, and leaves its amount as
+/// it is. Noisy renders take some 2 to 6 bits a pixel, RGB9E5 32. Values beyond 256 times the 99th percentile of the pixels' largest channels
 /// become that.
 JpegPicture encodeJpegPicture(const Image& image);
 

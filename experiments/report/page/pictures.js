@@ -24,7 +24,11 @@ class Picture {
         return this.toe !== undefined;
     }
 
-    /// A browser decodes a JPEG beside other work: `rgb` is there when it has.
+    /// A browser decodes a JPEG beside other work, once: `rgb` is there when it has.
+    ready() {
+        return (this.decoding ??= this.decodeJpeg());
+    }
+
     async decodeJpeg() {
         const jpeg = new Blob([embeddedBytes(this.id)], { type: "image/jpeg" }),
             bitmap = await createImageBitmap(jpeg, { colorSpaceConversion: "none" }),
@@ -166,9 +170,7 @@ function picture(id) {
 
 /// Before what shows pictures is made.
 const decodeJpegs = () =>
-    Promise.all(
-        data.images.map((image, id) => (image.toe === undefined || picture(id).codes !== undefined ? null : picture(id).decodeJpeg())),
-    );
+    Promise.all(data.images.map((image, id) => (image.toe === undefined ? null : picture(id).ready())));
 
 const blockMapCache = new Map();
 function blockMap(id, colour) {
