@@ -5,10 +5,10 @@
 #include <cmath>
 #include <limits>
 
+#include "core/image/convolution.h"
+
 namespace ulam {
 namespace {
-
-using Plane = std::vector<float>;
 
 struct Color {
     float x, y, z;
@@ -73,7 +73,7 @@ Color ycxczToLinear(const Color& c) {
 Color linearToHuntLab(const Color& rgb) {
     const auto f = [](float t) {
         constexpr float kDelta = 6.0f / 29;
-        return t > kDelta * kDelta * kDelta ? std::cbrt(t) : t / (3 * kDelta * kDelta) + 4.0f / 29;
+        return t > kDelta * kDelta * kDelta ? std::pow(t, 1.0f / 3) : t / (3 * kDelta * kDelta) + 4.0f / 29;
     };
     const Color v = apply(kToRelativeXyz, rgb);
     const float fy = f(v.y), lightness = 116 * fy - 16;
@@ -95,8 +95,6 @@ float toneMap(float x) {
 }
 
 // ---- filters (2020, sections 4.2 and 4.4); all are sums of products of a horizontal and a vertical one ----
-
-using Kernel = std::vector<float>;  // odd number of taps, centred
 
 template <class Function>
 Kernel makeKernel(int radius, Function function) {
@@ -157,45 +155,10 @@ struct Filters {
     }
 };
 
-/// Separable convolution of planes of one size; the outermost pixels continue beyond the border.
-class Convolver {
-public:
-    Convolver(int width, int height) : width_(width), height_(height) {}
-
-    Plane horizontal(const Plane& in, const Kernel& kernel) const {
-        const int radius = static_cast<int>(kernel.size()) / 2;
-        Plane out(in.size(), 0.0f), row(width_ + 2 * radius);
-        for (int y = 0; y < height_; ++y) {
-            const float* source = in.data() + offset(y);
-            for (int x = -radius; x < width_ + radius; ++x) row[x + radius] = source[std::clamp(x, 0, width_ - 1)];
-            // The tap at +i weighs the pixel at x - i.
-            for (int i = -radius; i <= radius; ++i) accumulate(y, kernel[i + radius], row.data() + radius - i, out);
-        }
-        return out;
-    }
-
-    Plane vertical(const Plane& in, const Kernel& kernel) const {
-        const int radius = static_cast<int>(kernel.size()) / 2;
-        Plane out(in.size(), 0.0f);
-        for (int y = 0; y < height_; ++y) {
-            for (int i = -radius; i <= radius; ++i) {
-                accumulate(y, kernel[i + radius], in.data() + offset(std::clamp(y - i, 0, height_ - 1)), out);
-            }
-        }
-        return out;
-    }
-
-    Plane both(const Plane& in, const Kernel& kernel) const { return vertical(horizontal(in, kernel), kernel); }
-
-private:
-    std::size_t offset(int y) const { return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_); }
-    void accumulate(int y, float weight, const float* from, Plane& to) const {
-        float* target = to.data() + offset(y);
-        for (int x = 0; x < width_; ++x) target[x] += weight * from[x];
-    }
-
-    int width_, height_;
-};
+const Filters& flipFilters() {
+    static const Filters filters;
+    return filters;
+}
 
 /// What the eye sees of one tone-mapped image.
 struct Perceived {
@@ -203,49 +166,60 @@ struct Perceived {
     Plane edges, points;
 };
 
-Plane magnitude(const Plane& x, const Plane& y) {
-    Plane result(x.size());
-    for (std::size_t i = 0; i < x.size(); ++i) result[i] = std::sqrt(x[i] * x[i] + y[i] * y[i]);
-    return result;
-}
-
-Perceived perceive(const Image& image, float exposureFactor, const Filters& filters) {
-    const std::size_t count = image.pixels.size();
-    Plane luma(count), redGreen(count), blueYellow(count);
-    for (std::size_t i = 0; i < count; ++i) {
-        const auto shown = [&](float v) { return toneMap(std::max(v, 0.0f) * exposureFactor); };
-        const Rgb& p = image.pixels[i];
-        const Color c = linearToYcxcz({shown(p.x), shown(p.y), shown(p.z)});
-        luma[i] = c.x;
-        redGreen[i] = c.y;
-        blueYellow[i] = c.z;
+/// Tells what the eye sees of images of one size. Keeps its planes from image to image.
+class Eye {
+public:
+    Eye(int width, int height) : convolver_(width, height) {
+        const auto count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+        for (Plane* plane : {&luma_, &redGreen_, &blueYellow_, &seenLuma_, &seenRedGreen_, &seen1_, &seen2_, &smooth_})
+            plane->resize(count);
     }
 
-    const Convolver convolver(image.width, image.height);
-    const Plane seenLuma = convolver.both(luma, filters.achromatic);
-    const Plane seenRedGreen = convolver.both(redGreen, filters.redGreen);
-    const Plane seen1 = convolver.both(blueYellow, filters.blueYellow1);
-    const Plane seen2 = convolver.both(blueYellow, filters.blueYellow2);
-    const float share = filters.blueYellowShare1;
+    void perceive(const Image& image, float exposureFactor, Perceived& result) {
+        const std::size_t count = image.pixels.size();
+        for (std::size_t i = 0; i < count; ++i) {
+            const auto shown = [&](float v) { return toneMap(std::max(v, 0.0f) * exposureFactor); };
+            const Rgb& p = image.pixels[i];
+            const Color c = linearToYcxcz({shown(p.x), shown(p.y), shown(p.z)});
+            luma_[i] = c.x;
+            redGreen_[i] = c.y;
+            blueYellow_[i] = c.z;
+        }
 
-    Perceived result;
-    result.lab.resize(count);
-    for (std::size_t i = 0; i < count; ++i) {
-        Color rgb = ycxczToLinear({seenLuma[i], seenRedGreen[i], share * seen1[i] + (1 - share) * seen2[i]});
-        for (float* v : {&rgb.x, &rgb.y, &rgb.z}) *v = std::clamp(*v, 0.0f, 1.0f);
-        result.lab[i] = linearToHuntLab(rgb);
+        const Filters& filters = flipFilters();
+        convolver_.both(luma_, filters.achromatic, seenLuma_);
+        convolver_.both(redGreen_, filters.redGreen, seenRedGreen_);
+        convolver_.both(blueYellow_, filters.blueYellow1, seen1_);
+        convolver_.both(blueYellow_, filters.blueYellow2, seen2_);
+        const float share = filters.blueYellowShare1;
+        result.lab.resize(count);
+        for (std::size_t i = 0; i < count; ++i) {
+            Color rgb = ycxczToLinear({seenLuma_[i], seenRedGreen_[i], share * seen1_[i] + (1 - share) * seen2_[i]});
+            for (float* v : {&rgb.x, &rgb.y, &rgb.z}) *v = std::clamp(*v, 0.0f, 1.0f);
+            result.lab[i] = linearToHuntLab(rgb);
+        }
+
+        for (float& v : luma_) v = (v + 16) / 116;
+        convolver_.horizontal(luma_, filters.gauss, smooth_);
+        gradient(filters.edge, result.edges);
+        gradient(filters.point, result.points);
     }
 
-    for (float& v : luma) v = (v + 16) / 116;
-    const Plane smooth = convolver.horizontal(luma, filters.gauss);
-    const auto along = [&](const Kernel& kernel) {
-        return magnitude(convolver.vertical(convolver.horizontal(luma, kernel), filters.gauss),
-                         convolver.vertical(smooth, kernel));
-    };
-    result.edges = along(filters.edge);
-    result.points = along(filters.point);
-    return result;
-}
+private:
+    /// Length of what the kernel finds across and down in the luma.
+    void gradient(const Kernel& kernel, Plane& result) {
+        Plane &across = seen1_, &down = seen2_;
+        convolver_.horizontal(luma_, kernel, down);
+        convolver_.vertical(down, flipFilters().gauss, across);
+        convolver_.vertical(smooth_, kernel, down);
+        result.resize(luma_.size());
+        for (std::size_t i = 0; i < result.size(); ++i)
+            result[i] = std::sqrt(across[i] * across[i] + down[i] * down[i]);
+    }
+
+    Convolver convolver_;
+    Plane luma_, redGreen_, blueYellow_, seenLuma_, seenRedGreen_, seen1_, seen2_, smooth_;
+};
 
 // ---- the error of a pixel (2020, sections 4.3 to 4.5) ----
 
@@ -281,26 +255,30 @@ FlipExposures flipExposures(const Image& reference) {
     return {start, stop, std::max(2, static_cast<int>(std::ceil(stop - start)))};
 }
 
-std::vector<double> flipErrorMap(const Image& image, const Image& reference) {
-    static const Filters filters;
+std::vector<std::vector<double>> flipErrorMaps(std::span<const Image* const> images, const Image& reference) {
     static const float largest = std::pow(hyab(linearToHuntLab({0, 1, 0}), linearToHuntLab({0, 0, 1})), kColorExponent);
 
     const FlipExposures exposures = flipExposures(reference);
     const double step = (exposures.stop - exposures.start) / (exposures.count - 1);
-    std::vector<double> map(reference.pixels.size(), 0.0);
+    Eye eye(reference.width, reference.height);
+    Perceived expected, seen;
+    std::vector<std::vector<double>> maps(images.size(), std::vector<double>(reference.pixels.size(), 0.0));
     for (int exposure = 0; exposure < exposures.count; ++exposure) {
         const auto factor = static_cast<float>(std::exp2(exposures.start + exposure * step));
-        const Perceived seen = perceive(image, factor, filters);
-        const Perceived expected = perceive(reference, factor, filters);
-        for (std::size_t i = 0; i < map.size(); ++i) {
-            const float color = colorError(hyab(seen.lab[i], expected.lab[i]), largest);
-            const float edges = std::abs(seen.edges[i] - expected.edges[i]);
-            const float points = std::abs(seen.points[i] - expected.points[i]);
-            const float features = std::sqrt(std::max(edges, points) / std::sqrt(2.0f));
-            map[i] = std::max<double>(map[i], std::pow(color, 1 - features));
+        eye.perceive(reference, factor, expected);
+        for (std::size_t n = 0; n < images.size(); ++n) {
+            eye.perceive(*images[n], factor, seen);
+            std::vector<double>& map = maps[n];
+            for (std::size_t i = 0; i < map.size(); ++i) {
+                const float color = colorError(hyab(seen.lab[i], expected.lab[i]), largest);
+                const float edges = std::abs(seen.edges[i] - expected.edges[i]);
+                const float points = std::abs(seen.points[i] - expected.points[i]);
+                const float features = std::sqrt(std::max(edges, points) / std::sqrt(2.0f));
+                map[i] = std::max<double>(map[i], std::pow(color, 1 - features));
+            }
         }
     }
-    return map;
+    return maps;
 }
 
 }  // namespace ulam

@@ -4,6 +4,7 @@
 // Andersson et al., "Visualizing Errors in Rendered High Dynamic Range Images", Eurographics Short Papers 2021
 // (HDR-FLIP).
 
+#include <span>
 #include <vector>
 
 #include "core/image/image.h"
@@ -22,8 +23,8 @@ struct FlipExposures {
 /// From the brightest pixel and the median luminance of the reference.
 FlipExposures flipExposures(const Image& reference);
 
-/// One FLIP error in [0, 1] a pixel, row by row from the top: the largest over the exposures. Negative values count as
-/// zero. The images have the same size.
-std::vector<double> flipErrorMap(const Image& image, const Image& reference);
+/// Of each image one FLIP error in [0, 1] a pixel, row by row from the top: the largest over the exposures. Negative
+/// values count as zero. The images have the reference's size.
+std::vector<std::vector<double>> flipErrorMaps(std::span<const Image* const> images, const Image& reference);
 
 }  // namespace ulam

@@ -53,8 +53,15 @@ Metric::Map channelMap(const Image& image, const Image& reference, const Image* 
 Metric::Map ssimMap(const Image& image, const Image& reference, const Image*) {
     return ssimErrorMap(image, reference);
 }
-Metric::Map flipMap(const Image& image, const Image& reference, const Image*) {
-    return flipErrorMap(image, reference);
+
+template <Metric::Map map(const Image& image, const Image& reference, const Image* variance)>
+std::vector<Metric::Map> each(Metric::Images images, const Image& reference, const Image* variance) {
+    std::vector<Metric::Map> maps;
+    for (const Image* image : images) maps.push_back(map(*image, reference, variance));
+    return maps;
+}
+std::vector<Metric::Map> flipMaps(Metric::Images images, const Image& reference, const Image*) {
+    return flipErrorMaps(images, reference);
 }
 
 double same(double mean) {
@@ -74,20 +81,20 @@ constexpr std::array<MetricConstant, 5> kSsimConstants{
 constexpr std::array<MetricConstant, 1> kFlipConstants{{{"pixels_per_degree", kFlipPixelsPerDegree}}};
 
 const std::array<Metric, 8> kMetrics{{
-    {"mse", "mean (x - r)^2 - Var(r)", {}, true, false, channelMap<squared>, same},
-    {"mae", "mean |x - r|", {}, false, false, channelMap<absolute>, same},
+    {"mse", "mean (x - r)^2 - Var(r)", {}, true, false, each<channelMap<squared>>, same},
+    {"mae", "mean |x - r|", {}, false, false, each<channelMap<absolute>>, same},
     {"relmse", "mean ((x - r)^2 - Var(r)) / (r^2 + epsilon)", kEpsilonConstant, true, false,
-     channelMap<relativeSquared>, same},
+     each<channelMap<relativeSquared>>, same},
     {"mape", "mean |x - r| / (|r| + epsilon), a ratio, not per cent", kEpsilonConstant, false, false,
-     channelMap<relativeAbsolute>, same},
+     each<channelMap<relativeAbsolute>>, same},
     {"smape", "mean |x - r| / (|x| + |r| + epsilon), between 0 and 1", kEpsilonConstant, false, false,
-     channelMap<symmetric>, same},
+     each<channelMap<symmetric>>, same},
     {"psnr", "10 log10(peak^2 / mean (x - r)^2) in decibels", kPsnrConstants, false, true,
-     channelMap<squaredAsMeasured>, psnrFromMse},
+     each<channelMap<squaredAsMeasured>>, psnrFromMse},
     {"ssim", "structural similarity (Wang et al. 2004) of sRGB-encoded luminance clamped to [0, 1]", kSsimConstants,
-     false, true, ssimMap, ssimFromError},
+     false, true, each<ssimMap>, ssimFromError},
     {"flip", "HDR-FLIP (Andersson et al. 2020, 2021): mean over pixels of the largest error over exposures, ACES",
-     kFlipConstants, false, false, flipMap, same},
+     kFlipConstants, false, false, flipMaps, same},
 }};
 
 double mean(const double* begin, std::size_t count) {
@@ -96,19 +103,28 @@ double mean(const double* begin, std::size_t count) {
 
 }  // namespace
 
-Metric::Map Metric::errorMap(const Image& image, const Image& reference, const Image* referenceVariance) const {
+std::vector<Metric::Map> Metric::errorMaps(Images images, const Image& reference,
+                                           const Image* referenceVariance) const {
     const auto sameSize = [&](const Image& other) {
-        return image.width == other.width && image.height == other.height;
+        return other.width == reference.width && other.height == reference.height;
     };
-    if (image.pixels.empty() || !sameSize(reference)) {
-        fail(ExitCode::InvalidConfig, "{}: expected two images of one size; found {} x {} and a reference of {} x {}",
-             name, image.width, image.height, reference.width, reference.height);
+    for (const Image* image : images) {
+        if (image->pixels.empty() || !sameSize(*image)) {
+            fail(ExitCode::InvalidConfig,
+                 "{}: expected two images of one size; found {} x {} and a reference of {} x {}", name, image->width,
+                 image->height, reference.width, reference.height);
+        }
     }
     if (referenceVariance && !sameSize(*referenceVariance)) {
         fail(ExitCode::InvalidConfig, "{}: expected the variance of a reference of {} x {}; found {} x {}", name,
              reference.width, reference.height, referenceVariance->width, referenceVariance->height);
     }
-    return computeMap(image, reference, referenceVariance);
+    return computeMaps(images, reference, referenceVariance);
+}
+
+Metric::Map Metric::errorMap(const Image& image, const Image& reference, const Image* referenceVariance) const {
+    const Image* const one = &image;
+    return std::move(errorMaps({&one, 1}, reference, referenceVariance).front());
 }
 
 double Metric::evaluate(const Image& image, const Image& reference, const Image* referenceVariance) const {
@@ -121,9 +137,10 @@ double Metric::value(const Map& map) const {
 
 double Metric::trimmedValue(const Map& map) const {
     const auto kept = map.size() - static_cast<std::size_t>(kTrimmedShare * static_cast<double>(map.size()));
-    Map sorted = map;
-    std::sort(sorted.begin(), sorted.end());
-    return fromMeanError(mean(sorted.data(), kept));
+    Map parted = map;
+    if (kept < map.size())
+        std::nth_element(parted.begin(), parted.begin() + static_cast<std::ptrdiff_t>(kept), parted.end());
+    return fromMeanError(mean(parted.data(), kept));
 }
 
 void requireVariance(const Image& variance, const std::string& file) {

@@ -19,6 +19,7 @@ struct MetricConstant {
 /// function of the map's mean: the mean itself for all but psnr and ssim.
 struct Metric {
     using Map = std::vector<double>;
+    using Images = std::span<const Image* const>;
 
     std::string_view name;
     std::string_view definition;  // one line
@@ -26,12 +27,15 @@ struct Metric {
     bool debiased;        // the variance of the reference is subtracted; then a map and its mean may be negative
     bool higherIsBetter;  // psnr and ssim
 
-    Map (*computeMap)(const Image& image, const Image& reference, const Image* referenceVariance);
+    std::vector<Map> (*computeMaps)(Images images, const Image& reference, const Image* referenceVariance);
     double (*fromMeanError)(double meanError);
 
-    /// Of two images of the same size. `referenceVariance` is the variance of the mean reference image per pixel and
-    /// channel, zero where null; metrics that are not debiased ignore it.
-    /// Throws ExitCode::InvalidConfig if the sizes differ or the image is empty.
+    /// Of images of the reference's size, a map of each: many at once are faster where the metric must look at the
+    /// reference for long. `referenceVariance` is the variance of the mean reference image per pixel and channel, zero
+    /// where null; metrics that are not debiased ignore it.
+    /// Throws ExitCode::InvalidConfig if the sizes differ or an image is empty.
+    std::vector<Map> errorMaps(Images images, const Image& reference, const Image* referenceVariance = nullptr) const;
+    /// Of one image.
     Map errorMap(const Image& image, const Image& reference, const Image* referenceVariance = nullptr) const;
     /// The metric from its map. The psnr of equal images is infinite.
     double value(const Map& map) const;

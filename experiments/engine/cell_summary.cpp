@@ -92,10 +92,16 @@ private:
         for (const std::string& name : plan_.metrics) {
             const Metric& metric = findMetric(name);
             std::vector<double> full, trimmed;
-            for (const Replicate& r : replicates_) {
-                const Metric::Map map = metric.errorMap(r.image, reference_.image, &reference_.variance);
-                full.push_back(metric.value(map));
-                trimmed.push_back(metric.trimmedValue(map));
+            // A batch looks at the reference once; its maps are held together.
+            constexpr std::size_t kBatch = 8;
+            for (std::size_t begin = 0; begin < replicates_.size(); begin += kBatch) {
+                std::vector<const Image*> images;
+                for (std::size_t i = begin; i < std::min(begin + kBatch, replicates_.size()); ++i)
+                    images.push_back(&replicates_[i].image);
+                for (const Metric::Map& map : metric.errorMaps(images, reference_.image, &reference_.variance)) {
+                    full.push_back(metric.value(map));
+                    trimmed.push_back(metric.trimmedValue(map));
+                }
             }
             const double worst = metric.higherIsBetter ? std::ranges::min(full) : std::ranges::max(full);
             Json perReplicate = Json::array();
