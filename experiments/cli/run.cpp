@@ -116,7 +116,7 @@ void printDryRun(const Plan& plan, const std::optional<Tuning>& tuning, const Ru
                    cell["replicates"].dump(), cell["budget"].dump(), cell["random_keys"][0].dump(),
                    durationText(cell["estimated_seconds"]), sizeText(cell["estimated_bytes"]));
     const Cost total = estimate.total(plan);
-    fmt::print("{} cells, {} comparisons, about {} and {}{}\n", plan.cells.size(), plan.comparisons.size(),
+    fmt::print("{} cells, {} comparisons, about {} and {} without tables and report{}\n", plan.cells.size(), plan.comparisons.size(),
                durationText(total.seconds), sizeText(total.bytes),
                estimate.tried < plan.cells.size() ? fmt::format(" (from trials of {} cells)", estimate.tried) : "");
     if (tuning)
