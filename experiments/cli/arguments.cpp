@@ -15,6 +15,7 @@
 #include "core/render/sampler.h"
 #include "core/scene/loading/scene_file.h"
 #include "experiments/engine/lease.h"
+#include "experiments/engine/provenance.h"
 
 namespace ulam {
 namespace {
@@ -30,6 +31,7 @@ void openPlugin(const std::string& file) {
     const std::string path = fs::absolute(file).string();
     if (!::dlopen(path.c_str(), RTLD_NOW | RTLD_GLOBAL))
         fail(ExitCode::InvalidConfig, "cannot open the plug-in {}: {}", file, ::dlerror());
+    addToCode(path);
 }
 
 bool looksLikeFile(const std::string& argument) { return argument.find('/') != argument.npos || fs::path(argument).extension() == ".json"; }

@@ -206,6 +206,7 @@ void runExperiment(const RunArguments& a) {
         const TuningOutcome outcome = tune(document, a.experiment, *tuning, options, watchSignals(), progress);
         if (outcome.interrupted) failIfSignalled(kGoOn);
         plan = makePlan(outcome.experiment, a.experiment);
+        plan.experiment.erase("tune");  // experiment.json holds what was chosen, and can be run as it is
         tuned = outcome.record;
     }
     if (slurm) {

@@ -1,6 +1,7 @@
 #include "experiments/engine/cell_errors.h"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 
 #include "core/image/metrics.h"
@@ -9,11 +10,37 @@
 
 namespace ulam {
 
-double referenceVariance(const Plan& plan, const Reference& reference) {
-    // The same for every image: the reference is compared with itself.
+namespace {
+
+/// Of a debiased metric. The same for every image: the reference is compared with itself.
+double subtracted(const Metric& metric, const Reference& reference) {
+    return metric.evaluate(reference.image, reference.image) -
+           metric.evaluate(reference.image, reference.image, &reference.variance);
+}
+
+const Metric& judge(const Plan& plan) {
     const Metric& primary = findMetric(plan.metrics.front());
-    return primary.evaluate(reference.image, reference.image) -
-           primary.evaluate(reference.image, reference.image, &reference.variance);
+    return primary.debiased ? primary : findMetric("relmse");
+}
+
+}  // namespace
+
+double referenceVariance(const Plan& plan, const Reference& reference) {
+    return subtracted(findMetric(plan.metrics.front()), reference);
+}
+
+double judgingError(const Plan& plan, const Reference& reference, const Image& image) {
+    return judge(plan).evaluate(image, reference.image, &reference.variance);
+}
+
+double shareOfReference(const Plan& plan, const Reference& reference, double meanJudgingError) {
+    const double variance = subtracted(judge(plan), reference);
+    if (variance == 0) return 0;
+    return meanJudgingError > 0 ? variance / meanJudgingError : std::numeric_limits<double>::infinity();
+}
+
+bool isTooPoor(double referenceShare) {
+    return referenceShare > statistics::kReferenceShare;
 }
 
 CellErrors cellErrors(const Plan& plan, const Cell& cell, const Reference& reference,
@@ -22,12 +49,16 @@ CellErrors cellErrors(const Plan& plan, const Cell& cell, const Reference& refer
     CellErrors found;
     found.referenceVariance = referenceVariance(plan, reference);
     found.halvesAgree = reference.halvesAgree;
+    double judged = 0;
     for (int r = 0; r < cell.task.replicates; ++r) {
         const auto finished = finishedReplicate(cell.task, r, cellFolder(runDir, cell));
         if (!finished) continue;
         found.replicates.push_back(r);
         found.errors.push_back(primary.evaluate(finished->image, reference.image, &reference.variance));
+        judged += judgingError(plan, reference, finished->image);
     }
+    if (!found.errors.empty())
+        found.referenceShare = shareOfReference(plan, reference, judged / static_cast<double>(found.errors.size()));
     return found;
 }
 
@@ -60,7 +91,8 @@ std::vector<DecidedComparison> decideComparisons(const Plan& plan, const std::ve
         family.push_back(statistics::compare(pick(sampler.errors, replicates.sampler),
                                              pick(baseline.errors, replicates.baseline), sampler.referenceVariance,
                                              plan.design));
-        if (!sampler.halvesAgree) family.back().referenceTooPoor = true;
+        if (!sampler.halvesAgree || isTooPoor(std::max(sampler.referenceShare, baseline.referenceShare)))
+            family.back().referenceTooPoor = true;
         decided.push_back({planned, std::move(replicates), {}});
     }
     statistics::decide(family, plan.design.looks);

@@ -10,6 +10,7 @@ struct CellErrors {
     std::vector<int> replicates;   ///< numbers of the finished ones, rising
     std::vector<double> errors;    ///< primary metric of each
     double referenceVariance = 0;  ///< what debiasing subtracted from each error
+    double referenceShare = 0;     ///< see shareOfReference
     bool halvesAgree = true;       ///< of the reference
 };
 
@@ -18,6 +19,13 @@ CellErrors cellErrors(const Plan& plan, const Cell& cell, const Reference& refer
                       const std::filesystem::path& runDir);
 /// What debiasing subtracts from the primary metric of any image.
 double referenceVariance(const Plan& plan, const Reference& reference);
+/// The error of an image by which its reference is judged: the primary metric, or relMSE where that one is not debiased and
+/// would not show the noise of the reference.
+double judgingError(const Plan& plan, const Reference& reference, const Image& image);
+/// The variance of the reference over a mean judging error; infinite where that is not positive.
+double shareOfReference(const Plan& plan, const Reference& reference, double meanJudgingError);
+/// Whether such a share leaves errors that cannot be judged.
+bool isTooPoor(double referenceShare);
 
 /// Indices into the errors of two cells: all, or the pairs of replicates that both have where random numbers are common.
 struct ComparedReplicates {

@@ -72,7 +72,7 @@ public:
         addFeatures();
         json["reference"] = reference.key;
         json["reference_image"] = "references/" + reference.key + "/image.exr";
-        addMachines();
+        addOrigins();
         judgeReference();
         addWarnings();
         json["warnings"] = warnings_;
@@ -115,7 +115,12 @@ private:
         }
         summary_.json["metrics"] = std::move(all);
 
-        for (const Replicate& r : replicates_) summary_.errors.replicates.push_back(r.number);
+        double judged = 0;
+        for (const Replicate& r : replicates_) {
+            summary_.errors.replicates.push_back(r.number);
+            judged += judgingError(plan_, reference_, r.image) / static_cast<double>(replicates_.size());
+        }
+        summary_.errors.referenceShare = shareOfReference(plan_, reference_, judged);
         summary_.errors.referenceVariance = referenceVariance(plan_, reference_);
         summary_.errors.halvesAgree = reference_.halvesAgree;
 
@@ -273,24 +278,37 @@ private:
         summary_.json["feature_grid"] = {features.rows, features.columns};
     }
 
-    void addMachines() {
-        std::map<std::string, int> replicates;
-        for (const Replicate& r : replicates_) ++replicates[r.result.value("processor", "not known")];
-        summary_.json["machines"] = Json::array();
-        for (const auto& [processor, count] : replicates)
-            summary_.json["machines"].push_back({{"processor", processor}, {"replicates", count}});
+    /// What the replicates were made with.
+    void addOrigins() {
+        std::map<Json, int> machines, builds;
+        for (const Replicate& r : replicates_) {
+            ++machines[{{"processor", r.result.value("processor", "not known")},
+                        {"threads", r.result.at("threads")},
+                        {"simd", r.result.value("simd", Json())}}];
+            ++builds[{{"code_sha256", r.result.value("code_sha256", "not known")}}];
+        }
+        for (const auto& [name, counts] : {std::pair("machines", machines), std::pair("builds", builds)}) {
+            summary_.json[name] = Json::array();
+            for (const auto& [key, count] : counts) {
+                Json entry = key;
+                entry["replicates"] = count;
+                summary_.json[name].push_back(std::move(entry));
+            }
+        }
     }
 
     void judgeReference() {
         const CellErrors& found = summary_.errors;
         const bool tooNoisy =
             std::ranges::any_of(found.errors, [](double e) { return e <= 0; }) ||
-            found.referenceVariance > statistics::kReferenceShare * statistics::mean(found.errors);
+            isTooPoor(found.referenceShare);
         summary_.json["reference_variance"] = found.referenceVariance;
+        summary_.json["reference_share"] = numberOrNull(found.referenceShare);
         summary_.json["reference_too_poor"] = tooNoisy || !reference_.halvesAgree;
         if (tooNoisy)
             warnings_.push_back(
-                "the reference is too poor: its own variance is more than 10 % of the error, which cannot be judged");
+                "the reference is too poor: its own variance is more than 10 % of the error, which cannot be judged; raise budget "
+                "and replicates of the reference by the same factor, and it is extended");
         if (!reference_.halvesAgree)
             warnings_.push_back("the two halves of the reference disagree: it needs a larger budget");
     }

@@ -1,8 +1,12 @@
 #include "experiments/engine/estimate.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
+#include <random>
+#include <ranges>
+#include <span>
 
 #include "core/base/file.h"
 #include "core/render/seeding.h"
@@ -93,6 +97,12 @@ double bytesOf(const fs::path& folder, const Task& task, const RenderResult& tri
     return bytes + double(std::min(traces.size(), kKeptChains)) * drawsAfter(traces.front(), factor) * sizeof(ChainTrace::Draw);
 }
 
+/// What a task's seconds and bytes are taken to be proportional to among cells of one sampler and scene.
+Cost sizeOf(const Task& task) {
+    const Perspective& sensor = *task.scene->scene.sensor;
+    return {limitsWork(task.budget) ? unitsOf(task) : *task.budget.seconds, double(sensor.width()) * sensor.height()};
+}
+
 }  // namespace
 
 Cost estimateReplicate(const Task& whole, int threads) {
@@ -124,19 +134,28 @@ Cost estimateReplicate(const Task& whole, int threads) {
 PlanEstimate estimatePlan(const Plan& plan, int threads) {
     PlanEstimate estimate;
     estimate.cells.resize(plan.cells.size());
-    const std::size_t step = (plan.cells.size() + kTriedCells - 1) / kTriedCells;
-    std::map<std::string, std::pair<Cost, double>> sums;  // of the tried cells of a sampler, and how many
-    for (std::size_t c = 0; c < plan.cells.size(); ++c) {
-        const Task& task = plan.cells[c].task;
-        auto& [sum, count] = sums[task.sampler];
-        if (c % step == 0 || count == 0) {
+    std::map<std::pair<std::string, std::string>, std::vector<std::size_t>> alike;  // by sampler and scene's name
+    for (std::size_t c = 0; c < plan.cells.size(); ++c)
+        alike[{plan.cells[c].task.sampler, plan.cells[c].task.scene->name}].push_back(c);
+    const double share = std::min(1.0, double(kTriedCells) / double(plan.cells.size()));
+    for (std::vector<std::size_t>& group : alike | std::views::values) {
+        // Random ones: regular steps might meet a single value of what is swept.
+        std::shuffle(group.begin(), group.end(), std::mt19937_64(plan.seed));
+        const auto tried = std::size_t(std::ceil(share * double(group.size())));
+        Cost sum, size;  // units and pixels of the tried ones
+        for (const std::size_t c : std::span(group).first(tried)) {
+            const Task& task = plan.cells[c].task;
             const Cost found = estimate.cells[c] = estimateReplicate(task, threads);
-            sum.seconds += found.seconds, sum.bytes += found.bytes, ++count, ++estimate.tried;
+            sum.seconds += found.seconds, sum.bytes += found.bytes;
+            size.seconds += sizeOf(task).seconds, size.bytes += sizeOf(task).bytes;
         }
-    }
-    for (std::size_t c = 0; c < plan.cells.size(); ++c) {
-        const auto& [sum, count] = sums.at(plan.cells[c].task.sampler);
-        if (estimate.cells[c].bytes == 0) estimate.cells[c] = {sum.seconds / count, sum.bytes / count};
+        for (const std::size_t c : std::span(group).subspan(tried)) {
+            const Cost own = sizeOf(plan.cells[c].task);
+            estimate.cells[c] = {sum.seconds * own.seconds / size.seconds, sum.bytes * own.bytes / size.bytes};
+            if (const auto most = plan.cells[c].task.budget.seconds)
+                estimate.cells[c].seconds = std::min(estimate.cells[c].seconds, *most);
+        }
+        estimate.tried += tried;
     }
     for (const PlannedReference& reference : plan.references) {
         const bool made = reference.spec.kind == ReferenceSpec::Kind::Sampler;

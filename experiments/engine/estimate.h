@@ -16,8 +16,8 @@ struct Cost {
 /// extrapolated by its own plan (docs/seeding.md). How well this does: docs/experiments.md.
 Cost estimateReplicate(const Task& task, int threads);
 
-/// Of a whole plan. Beyond so many cells only some are tried, evenly spaced, and the others are taken to cost what those of
-/// the same sampler do on average.
+/// Of a whole plan. Beyond so many cells only some are tried, of each sampler on each scene the same share at random (at
+/// least one); the others are taken to need what these do for a unit of work, or second of budget, and for a pixel.
 inline constexpr std::size_t kTriedCells = 100;
 
 struct PlanEstimate {

@@ -127,7 +127,7 @@ private:
                 task.budget = {part(spec.budget.seconds), part(spec.budget.spp), part(spec.budget.mutations),
                                part(spec.budget.rays)};
                 identity["task"] = task.hash();
-                identity["program"] = programHash();  // another build may have another bug
+                identity["program"] = codeHash();  // another build may have another bug
                 break;
             }
         }

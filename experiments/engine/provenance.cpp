@@ -30,15 +30,25 @@ std::string kernelValue(const char* file, std::string_view key) {
     return "";
 }
 
+const char* const kExecutable = "/proc/self/exe";
+
+std::string& mutableCodeHash() {
+    static std::string hash = sha256OfFile(kExecutable);
+    return hash;
+}
+
 }  // namespace
 
 std::string programVersion() {
     return build::kVersion;
 }
 
-const std::string& programHash() {
-    static const std::string hash = sha256OfFile("/proc/self/exe");
-    return hash;
+const std::string& codeHash() {
+    return mutableCodeHash();
+}
+
+void addToCode(const std::string& plugin) {
+    mutableCodeHash() = sha256(codeHash() + sha256OfFile(plugin));
 }
 
 std::vector<std::string> processArguments() {
@@ -92,7 +102,8 @@ Json provenance(const std::vector<std::string>& arguments) {
           {"flags", build::kFlags},
           {"simd", simd()},
           {"cmake", build::kCmake},
-          {"executable_sha256", programHash()}}},
+          {"executable_sha256", sha256OfFile(kExecutable)},
+          {"code_sha256", codeHash()}}},
         {"libraries",
          {{"embree", build::kEmbree},
           {"openimageio", build::kOpenImageIo},

@@ -10,8 +10,10 @@ namespace ulam {
 
 /// "0.1.0"
 std::string programVersion();
-/// SHA-256 of the executable.
-const std::string& programHash();
+/// Tells one build of the code from another: SHA-256 of the executable and of the plug-ins that were opened.
+const std::string& codeHash();
+/// To be called for each plug-in.
+void addToCode(const std::string& plugin);
 
 /// Program, build, libraries, machine, process and time; `arguments` is the command line.
 Json provenance(const std::vector<std::string>& arguments);

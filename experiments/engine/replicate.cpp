@@ -118,7 +118,7 @@ bool renderReplicate(const Task& task, int replicate, const fs::path& taskFolder
     options.interrupt = &interrupt;
     options.preview = preview;
     options.checkpoint = CheckpointPlan{.file = checkpointFile(taskFolder, replicate),
-                                        .identity = {{"task", task.hash()}, {"replicate", replicate}},
+                                        .identity = {{"task", task.hash()}, {"replicate", replicate}, {"code", codeHash()}},
                                         .resume = Resume::IfUsable};
     makeFolder(replicateFolder(taskFolder, replicate));
     const RenderResult result = renderTask(task, options);

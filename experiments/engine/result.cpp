@@ -124,6 +124,7 @@ Json resultJson(const RunIdentity& run, const RenderResult& result, const Featur
         {"image_sha256", imageHash(result.image)},
         {"interrupted", result.interrupted},
         {"program_version", programVersion()},
+        {"code_sha256", codeHash()},
         {"host", hostName()},
         {"processor", processorName()},
         {"simd", simd()},

@@ -53,12 +53,14 @@ std::set<std::size_t> openCells(const Plan& plan, const std::vector<CellErrors>&
 }  // namespace
 
 int addReplicates(Plan& plan, const std::filesystem::path& runDir, const std::set<std::size_t>& without) {
+    const std::vector<int> counts = plan.replicatesOfCells();
+    const int reached = std::ranges::max(counts), next = std::min(2 * reached, plan.until->maxReplicates);
+    if (next <= reached) return 0;  // this was the last look
     int added = 0;
     for (const std::size_t c : openCells(plan, allErrors(plan, runDir, without))) {
         int& replicates = plan.cells[c].task.replicates;
-        const int more = std::min(2 * replicates, plan.until->maxReplicates);
-        added += std::max(0, more - replicates);
-        replicates = std::max(replicates, more);
+        added += next - replicates;
+        replicates = next;
     }
     return added;
 }

@@ -8,9 +8,11 @@
 
 namespace ulam {
 
-/// Doubles the replicates, up to the most, of the cells that need more: those of comparisons that are neither decided nor
-/// known to the wanted width, and of cells without a comparison whose mean error is not. What a poor reference keeps
-/// undecided gets none, nor do cells `without` a reference (indices into Plan::references). Returns how many there are more.
+/// Brings the cells that need more to twice the replicates that any cell has, up to the most: those of comparisons that
+/// are neither decided nor known to the wanted width, and of cells without a comparison whose mean error is not. A cell
+/// that opens late catches up, so that no comparison is looked at more often than the plan has looks. What a poor reference
+/// keeps undecided gets none, nor do cells `without` a reference (indices into Plan::references). Returns how many there
+/// are more.
 int addReplicates(Plan& plan, const std::filesystem::path& runDir, const std::set<std::size_t>& without = {});
 
 }  // namespace ulam

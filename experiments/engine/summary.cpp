@@ -185,28 +185,35 @@ private:
                 warn("{} against {}: the errors are heavy-tailed, so that the interval may cover less than 95 %",
                      judged.cell->json["cell"].get<std::string>(), judged.baseline->json["cell"].get<std::string>());
         }
-        warnOfUnlikeMachines();
+        warnOfMixtures("machines", "results of unlike machines", "speed-ups, and errors under time budgets, are of the machines too",
+                       [](const Json& machine) {
+                           return fmt::format("{}, {} threads, {}", machine["processor"].get<std::string>(), machine["threads"].dump(),
+                                              machine["simd"].dump());
+                       });
+        warnOfMixtures("builds", "results of different builds of the program or its plug-ins",
+                       "what is compared may be two versions of an algorithm",
+                       [](const Json& build) { return build["code_sha256"].get<std::string>().substr(0, 12); });
         summary["comparisons"] = std::move(comparisons);
         summary["verdicts"] = std::move(verdicts);
     }
 
-    void warnOfUnlikeMachines() {
+    /// Of comparisons between whose replicates `field` of the cells differs.
+    template <class Text>
+    void warnOfMixtures(const char* field, const char* what, const char* consequence, Text text) {
         std::set<std::string> unlike;
         int mixed = 0;
         for (const PlannedComparison& c : plan_.comparisons) {
             if (cells_[c.cell].errors.errors.empty() || cells_[c.baseline].errors.errors.empty()) continue;
             std::set<std::string> own;
             for (const std::size_t cell : {c.cell, c.baseline})
-                for (const Json& machine : cells_[cell].json["machines"])
-                    own.insert(machine["processor"].get<std::string>());
+                for (const Json& entry : cells_[cell].json[field]) own.insert(text(entry));
             if (own.size() < 2) continue;
             ++mixed;
             unlike.merge(own);
         }
         if (mixed > 0)
-            warn("results of unlike machines stand in {} of {} planned comparisons, so that speed-ups, and errors under time budgets, are "
-                 "of the machines too: {}",
-                 mixed, plan_.comparisons.size(), fmt::join(unlike, "; "));
+            warn("{} stand in {} of {} planned comparisons, so that {}: {}", what, mixed, plan_.comparisons.size(), consequence,
+                 fmt::join(unlike, "; "));
     }
 
     const Plan& plan_;

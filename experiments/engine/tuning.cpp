@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numeric>
+#include <ranges>
 
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/sha256.h"
+#include "core/config/json_number.h"
 #include "experiments/engine/cell_errors.h"
 #include "experiments/engine/result.h"
 #include "experiments/statistics/moments.h"
@@ -47,12 +50,17 @@ void spellOutSampler(Json& reference, const Json& samplers) {
     sampler = Json(samplers[sampler.get<std::string>()]);
 }
 
-/// By candidate, the mean over the scenes of the log of the mean error.
+/// By candidate, the mean over the scenes of the log of the mean error; infinite for one that failed.
 std::map<std::size_t, double> scores(const Plan& plan, const fs::path& runDir, const std::vector<std::size_t>& candidates) {
     std::map<std::string, std::vector<double>> logs;
     for (const Cell& cell : plan.cells) {
         const Reference reference = readReference(plan.references[cell.reference], runDir);
-        const double error = statistics::mean(cellErrors(plan, cell, reference, runDir).errors);
+        const std::vector<double> errors = cellErrors(plan, cell, reference, runDir).errors;
+        if (errors.size() < std::size_t(cell.task.replicates)) {
+            logs[cell.task.sampler].push_back(std::numeric_limits<double>::infinity());
+            continue;
+        }
+        const double error = statistics::mean(errors);
         if (!(error > 0))
             fail(ExitCode::InvalidConfig, "{}: the reference is too poor to tune with: the error came out as {:.2g}",
                  cell.task.name, error);
@@ -81,6 +89,13 @@ std::optional<Tuning> plannedTuning(JsonDocument& experiment) {
                                    inQuotes(sampler)));
     }
     if (tuning.candidates.size() < 2) sweep.expected("at least two candidates");
+    if (const auto swept = root.find("sweep")) {
+        const SweepPoint first = expandSweep(*swept, root).front();
+        for (const SweepValue& value : first)
+            for (const SweepValue& tuned : tuning.candidates.front())
+                if ((value.path + ".").starts_with(tuned.path + ".") || (tuned.path + ".").starts_with(value.path + "."))
+                    swept->fail(fmt::format("{} is swept and tuned: the sweep would overwrite what was chosen", inQuotes(value.path)));
+    }
     const std::string untuned = tuning.sampler + "_untuned";
     const JsonNode samplers = root.at("samplers");
     if (const auto taken = samplers.find(untuned)) taken->fail(fmt::format("{} names the sampler before tuning", inQuotes(untuned)));
@@ -132,15 +147,20 @@ TuningOutcome tune(const JsonDocument& experiment, const fs::path& file, const T
         Plan plan = makePlan(roundExperiment(experiment, tuning, k, left), file);
         RunOptions own = options;
         own.runDir = options.runDir / "tuning" / fmt::format("round{}", k + 1);
-        own.keepGoing = false;
+        own.keepGoing = true;
         progress.message(fmt::format("tuning {}, round {}: {} candidates at {:.3g} of the budget", tuning.sampler, k + 1,
                                      left.size(), round.fraction));
-        if (runPlan(plan, own, interrupt, progress).interrupted) {
+        const RunOutcome ran = runPlan(plan, own, interrupt, progress);
+        if (ran.interrupted) {
             outcome.interrupted = true;
             return outcome;
         }
+        for (const Failure& failure : ran.failures)
+            if (failure.cell.empty()) fail(ExitCode::SomeCellsFailed, "tuning: the reference of {} failed: {}", failure.scene, failure.message);
         const auto found = scores(plan, own.runDir, left);
-        for (const auto& [candidate, score] : found) all[candidate]["scores"].push_back(score);
+        if (std::ranges::none_of(found | std::views::values, [](double score) { return std::isfinite(score); }))
+            fail(ExitCode::SomeCellsFailed, "tuning: every candidate failed: {}", ran.failures.front().message);
+        for (const auto& [candidate, score] : found) all[candidate]["scores"].push_back(numberOrNull(score));
         std::ranges::stable_sort(left, {}, [&](std::size_t c) { return found.at(c); });
         const auto reduction = static_cast<std::size_t>(tuning.parameters.reduction);
         left.resize((left.size() + reduction - 1) / reduction);

@@ -8,6 +8,7 @@
 
 #include "core/base/error.h"
 #include "experiments/engine/lease.h"
+#include "experiments/engine/provenance.h"
 #include "experiments/engine/reference.h"
 #include "experiments/engine/replicate.h"
 #include "experiments/engine/result.h"
@@ -262,7 +263,14 @@ private:
     }
 
     bool isThere(const Task& task, int replicate, const fs::path& folder, std::string* damage = nullptr) {
-        if (!finishedReplicate(task, replicate, folder, damage)) return false;
+        const auto finished = finishedReplicate(task, replicate, folder, damage);
+        if (!finished) return false;
+        if (!warnedOfBuilds_ && finished->result.value("code_sha256", "") != codeHash()) {
+            progress_.message(fmt::format("warning: another build of the program or its plug-ins made {}, replicate {}: if they "
+                                          "differ in more than looks, begin anew with another -o",
+                                          task.name, replicate + 1));
+            warnedOfBuilds_ = true;
+        }
         const fs::path place = replicateFolder(folder, replicate);
         std::error_code ignored;  // of a process that was killed at the very end
         fs::remove(checkpointFile(folder, replicate), ignored);
@@ -332,6 +340,7 @@ private:
     std::vector<Plan::Replicate> replicates_;      // the same, of cells
     bool firstTime_ = true;
     int reused_ = 0, settled_ = 0;
+    bool warnedOfBuilds_ = false;
 };
 
 }  // namespace

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <boost/math/distributions/normal.hpp>
-#include <boost/sort/spreadsort/float_sort.hpp>
+#include <boost/sort/spreadsort/integer_sort.hpp>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -129,9 +129,14 @@ std::vector<Draw> sortedDraws(std::vector<Trace>& chains) {
     for (Trace& chain : chains) {
         for (double& x : chain) order.push_back({x, &x});
     }
-    const auto bits = [](const Draw& draw, unsigned shift) { return std::bit_cast<std::int64_t>(draw.value) >> shift; };
-    boost::sort::spreadsort::float_sort(order.begin(), order.end(), bits,
-                                        [](const Draw& a, const Draw& b) { return a.value < b.value; });
+    // Bits that rise with the value. Boost's sort of floating point subtracts keys of both signs, which overflows.
+    const auto key = [](const Draw& draw, unsigned shift) {
+        constexpr std::uint64_t kSign = std::uint64_t{1} << 63;
+        const auto bits = std::bit_cast<std::uint64_t>(draw.value);
+        return (bits & kSign ? ~bits : bits | kSign) >> shift;
+    };
+    boost::sort::spreadsort::integer_sort(order.begin(), order.end(), key,
+                                          [](const Draw& a, const Draw& b) { return a.value < b.value; });
     return order;
 }
 

@@ -7,14 +7,15 @@ function tuningSection() {
     const names = Object.keys(candidates[0].values),
         same = (values) => JSON.stringify(values) === JSON.stringify(winner),
         said = (value) => (isNumber(value) ? plain(value) : JSON.stringify(value));
-    const last = (candidate) => candidate.scores.length;
-    const sorted = [...candidates].sort((a, b) => last(b) - last(a) || a.scores.at(-1) - b.scores.at(-1));
+    const last = (candidate) => candidate.scores.length,
+        score = (candidate) => candidate.scores.at(-1) ?? Number.MAX_VALUE;
+    const sorted = [...candidates].sort((a, b) => last(b) - last(a) || score(a) - score(b));
     const row = ({ values, scores }) =>
         el(
             "tr",
             { class: same(values) ? "winner" : "" },
             names.map((name) => el("th", { scope: "row" }, said(values[name]))),
-            rounds.map((_, k) => el("td", {}, isNumber(scores[k]) ? number(Math.exp(scores[k])) : kDash)),
+            rounds.map((_, k) => el("td", {}, isNumber(scores[k]) ? number(Math.exp(scores[k])) : scores[k] === null ? "failed" : kDash)),
             el("td", { class: "text" }, same(values) ? "chosen" : ""),
         );
     const head = [

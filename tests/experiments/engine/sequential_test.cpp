@@ -1,5 +1,6 @@
 #include "experiments/engine/sequential.h"
 
+#include <algorithm>
 #include <map>
 
 #include "tests/experiments/engine/tiny.h"
@@ -64,6 +65,23 @@ TEST_CASE("replicates are added to what is open, up to the most", "[sequential]"
         CHECK(comparison["p_adjusted"].get<double>() >= std::min(1.0, 3 * comparison["p"].get<double>()));
         CHECK(comparison["verdict"] == (comparison["sampler"] == "other" ? "worse" : "undecided"));
     }
+}
+
+TEST_CASE("cells that open late catch up, so that there are no more looks than planned", "[sequential]") {
+    const Folder folder;
+    const Json experiment = openQuestion(0.001);
+    replicatesAfter(folder, experiment);
+    Plan plan = planOf(folder, experiment);
+    const auto countOf = [&](const std::string& sampler) -> int& {
+        return std::ranges::find(plan.cells, sampler, [](const Cell& c) { return c.task.sampler; })->task.replicates;
+    };
+    countOf("again") = 10;
+    CHECK(addReplicates(plan, folder / "run") == 10 + 5);
+    CHECK(countOf("path") == 15);
+    CHECK(countOf("again") == 15);
+    // The last look was at what some cell had the most of.
+    countOf("path") = 10;
+    CHECK(addReplicates(plan, folder / "run") == 0);
 }
 
 TEST_CASE("a ratio that is known well enough gets no more", "[sequential]") {

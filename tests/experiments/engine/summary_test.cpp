@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "experiments/engine/provenance.h"
 #include "tests/experiments/engine/tiny.h"
 #include "tests/support/catch.h"
 
@@ -127,6 +128,46 @@ TEST_CASE("a reference worse than the images decides nothing and says so", "[sum
     CHECK(summary["comparisons"][0]["verdict"] == "undecided");
     CHECK(mentions(summary["verdicts"][0], "too poor"));
     CHECK(mentions(summary["warnings"].dump(), "too poor"));
+}
+
+TEST_CASE("a poor reference is found out by metrics that are not debiased, too", "[summary]") {
+    const Folder folder;
+    Json experiment = tinyExperiment();
+    experiment["budget"]["spp"] = 256;
+    experiment["metrics"] = Json::array({"mape"});
+    experiment["reference"]["budget"]["spp"] = 16;
+    const Json summary = summaryOf(folder, experiment);
+    for (const Json& cell : summary["cells"]) CHECK(cell["reference_too_poor"] == true);
+    CHECK(summary["comparisons"][0]["reference_too_poor"] == true);
+    CHECK(summary["comparisons"][0]["verdict"] == "undecided");
+}
+
+TEST_CASE("results of different builds are told of, and not gone on with in silence", "[summary]") {
+    const Folder folder;
+    const Plan plan = planOf(folder, tinyExperiment());
+    runIn(folder, plan);
+    const auto warnings = [&] { return summarize(plan, folder / "run", {})["warnings"].dump(); };
+    CHECK_FALSE(mentions(warnings(), "different builds"));
+    const fs::path file = folder / "run/cells/wall-bdpt/r001/result.json";
+    Json result = JsonDocument::fromFile(file).json();
+    CHECK(result["code_sha256"] == codeHash());
+    result["code_sha256"] = "other code";
+    writeFileAtomically(file, dump(result));
+    CHECK(mentions(warnings(), "results of different builds of the program or its plug-ins stand in 1 of 1 planned comparisons"));
+    CHECK(mentions(warnings(), "other code"));
+    CHECK(summarize(plan, folder / "run", {})["cells"][0]["builds"].size() +
+              summarize(plan, folder / "run", {})["cells"][1]["builds"].size() == 3);
+}
+
+TEST_CASE("other numbers of threads make a machine unlike", "[summary]") {
+    const Folder folder;
+    const Plan plan = planOf(folder, tinyExperiment());
+    runIn(folder, plan);
+    const fs::path file = folder / "run/cells/wall-bdpt/r001/result.json";
+    Json result = JsonDocument::fromFile(file).json();
+    result["threads"] = 64;
+    writeFileAtomically(file, dump(result));
+    CHECK(mentions(summarize(plan, folder / "run", {})["warnings"].dump(), "64 threads"));
 }
 
 TEST_CASE("results of unlike machines in one comparison are told of", "[summary]") {

@@ -100,6 +100,33 @@ TEST_CASE("what cannot be tuned is refused", "[tuning]") {
     CHECK(mentions(errorOf([&] { plannedTuning(two); }).message, "one sampler"));
 }
 
+TEST_CASE("what is tuned is not swept as well", "[tuning]") {
+    CHECK(mentions(tuningRefusal("sweep", {{"samplers.mlt.mutations.large_step.weight", {1, 2}}}), "swept and tuned"));
+    CHECK(mentions(tuningRefusal("sweep", {{"samplers.mlt", Json::array({Json{{"type", "pssmlt"}}})}}), "swept and tuned"));
+    JsonDocument other = documentOf(tunedExperiment());
+    other.set("sweep", {{"samplers.mlt.chains", {8, 16}}}, "test");
+    CHECK(plannedTuning(other));
+}
+
+TEST_CASE("a candidate that fails loses its round", "[tuning]") {
+    const Folder folder;
+    const auto outcomeOf = [&](const std::string& parameter, const Json& values) {
+        Json experiment = tunedExperiment();
+        experiment["samplers"]["mlt"] = {{"type", "portal"}};
+        experiment["tune"]["sweep"] = {{"samplers.mlt." + parameter, values}};
+        JsonDocument document = documentOf(experiment);
+        const Tuning tuning = *plannedTuning(document);
+        static const std::atomic<bool> never = false;
+        Progress progress(true);
+        return tune(document, folder / "experiment.json", tuning, {folder / parameter, 1, false}, never, progress);
+    };
+    // The sampler portal needs a scene with holes.
+    const TuningOutcome outcome = outcomeOf("type", {"portal", "path"});
+    CHECK(outcome.record["winner"] == Json{{"samplers.mlt.type", "path"}});
+    CHECK(outcome.record["candidates"][0]["scores"] == Json::array({nullptr}));
+    CHECK(mentions(errorOf([&] { outcomeOf("rr_depth", {5, 6}); }).message, "every candidate failed"));
+}
+
 TEST_CASE("a reference by a sampler of the experiment stays that sampler", "[tuning]") {
     Json experiment = tunedExperiment();
     experiment["samplers"]["mine"] = {{"type", "bdpt"}};
