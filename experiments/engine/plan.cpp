@@ -27,6 +27,20 @@ std::string sweptOrigin(const SweepValue& value) {
     return fmt::format("sweep {}={}", value.path, value.value.dump());
 }
 
+/// Of a cell's folder. File systems take names of up to 255 bytes.
+std::string cellName(const std::string& scene, const std::string& sampler, const std::vector<SweepValue>& values) {
+    constexpr std::size_t kLongest = 200;
+    std::string name = fmt::format("{}-{}", scene, sampler), shorter = name;
+    for (const SweepValue& value : values) {
+        name += "," + value.label;
+        shorter += "," + value.shortLabel;
+    }
+    if (name.size() <= kLongest) return name;
+    if (shorter.size() <= kLongest) return shorter;
+    const std::string end = ",hash=" + sha256(name).substr(0, 16);
+    return shorter.substr(0, shorter.rfind(',', kLongest - end.size())) + end;
+}
+
 class Planner {
 public:
     Planner(const JsonDocument& document, const fs::path& file) : document_(document), file_(file) {}
@@ -144,12 +158,11 @@ private:
         Cell cell;
         cell.reference = reference;
         Task& task = cell.task;
-        task.name = fmt::format("{}-{}", scene->name, sampler.name);
-        for (const SweepValue& value : point) {
-            if (!affects(value, scene->name, sampler.name)) continue;
-            task.name += "," + value.label;
-            cell.sweep[value.path] = value.value;
-        }
+        std::vector<SweepValue> own;
+        for (const SweepValue& value : point)
+            if (affects(value, scene->name, sampler.name)) own.push_back(value);
+        for (const SweepValue& value : own) cell.sweep[value.path] = value.value;
+        task.name = cellName(scene->name, sampler.name, own);
         task.stream = e.commonRandomNumbers ? "common random numbers" : task.name;
         task.scene = scene;
         task.sampler = sampler.name;

@@ -43,6 +43,33 @@ TEST_CASE("cells are scenes × samplers × what the sweep changes", "[plan]") {
     CHECK(plan.references.size() == 3);
 }
 
+TEST_CASE("names of cells are short enough for file systems", "[plan]") {
+    const Folder folder;
+    const auto names = [&](int mutations) {
+        Json experiment = tinyExperiment();
+        Json mix = Json::object(), zip = Json::object();
+        for (int m = 0; m < mutations; ++m) {
+            const std::string name = fmt::format("large_step_{}", m);
+            mix[name] = {{"type", "large_step"}};
+            zip["samplers.p.mutations." + name + ".weight"] = {0.123456 + m, 0.234567 + m};
+        }
+        experiment["samplers"] = {{"p", {{"type", "pssmlt"}, {"mutations", mix}}}};
+        experiment.erase("baseline");
+        experiment["sweep"] = {{"zip", zip}};
+        return cellNames(planOf(folder, experiment));
+    };
+    CHECK(names(2).contains("wall-p,samplers.p.mutations.large_step_0.weight=0.123456,samplers.p.mutations.large_step_1.weight=1.12346"));
+    CHECK(names(5).contains("wall-p,large_step_0.weight=0.123456,large_step_1.weight=1.12346,large_step_2.weight=2.12346,"
+                            "large_step_3.weight=3.12346,large_step_4.weight=4.12346"));
+    const auto hashed = names(12);
+    REQUIRE(hashed.size() == 2);
+    for (const std::string& name : hashed) {
+        CHECK(name.size() <= 200);
+        CHECK(mentions(name, "large_step_4.weight="));
+        CHECK(mentions(name, ",hash="));
+    }
+}
+
 TEST_CASE("random numbers depend on seed, cell and replicate and on nothing else", "[plan]") {
     const Folder folder;
     const auto keys = [&](const Json& experiment) {
