@@ -226,7 +226,7 @@ void runExperiment(const RunArguments& a) {
     if (tuning) summary["tuning"] = tuned;
     writeSummary(options.runDir, summary);
     judging.update(1, "report");
-    writeReport(options.runDir);
+    writeReport(options.runDir, summary);
     judging.clear();
     printResults(summary, options.runDir, a);
     if (!outcome.failures.empty()) {
