@@ -167,6 +167,8 @@ std::vector<std::string> workOptions(const CLI::App& command) {
 }
 
 void runExperiment(const RunArguments& a) {
+    if (!a.jobs.empty() && !a.viewer->empty())
+        fail(ExitCode::Usage, "--tev shows what this process renders, and with --jobs it renders nothing: leave out one of them");
     JsonDocument document = readExperiment(a.experiment);
     document.applyOverrides(a.assignments);
     const std::optional<Tuning> tuning = plannedTuning(document);
