@@ -43,6 +43,28 @@ TEST_CASE("cells are scenes × samplers × what the sweep changes", "[plan]") {
     CHECK(plan.references.size() == 3);
 }
 
+TEST_CASE("a sweep leads into the files of scenes", "[plan]") {
+    const Folder folder;
+    std::filesystem::create_directories(folder / "below");
+    Json scene = tinyScene();
+    scene["mesh"] = {{"type", "obj"}, {"filename", "mesh.obj"}};  // beside the scene
+    writeFileAtomically(folder / "below/mesh.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    writeFileAtomically(folder / "below/scene.json", scene.dump());
+    Json experiment = tinyExperiment();
+    experiment["scenes"]["wall"] = "below/scene.json";
+    const std::string unchanged = planOf(folder, experiment).cells[0].task.scene->scene.hash;
+    for (const Json& sweep : {Json{{"scenes.wall.lamp.emitter.radiance", {4, 8}}}, Json{{"zip", {{"scenes.wall.lamp.emitter.radiance", {4, 8}}}}}}) {
+        experiment["sweep"] = sweep;
+        const Plan plan = planOf(folder, experiment);
+        REQUIRE(plan.cells.size() == 4);
+        CHECK(plan.cells[0].task.scene->scene.hash == unchanged);
+        CHECK(plan.cells[2].task.scene->scene.hash != unchanged);
+        CHECK(plan.experiment["scenes"]["wall"] == "below/scene.json");
+    }
+    experiment["sweep"] = {{"scenes.wall.lamp.emitter.radianc", {4}}};
+    CHECK(mentions(errorOf([&] { planOf(folder, experiment); }).message, "did you mean \"radiance\"?"));
+}
+
 TEST_CASE("names of cells are short enough for file systems", "[plan]") {
     const Folder folder;
     const auto names = [&](int mutations) {
