@@ -193,6 +193,7 @@ JsonDocument::JsonDocument(std::shared_ptr<const Json> value, std::shared_ptr<co
     : value_(std::move(value)), source_(std::move(source)) {}
 
 JsonDocument JsonDocument::fromText(std::string text, std::string name) {
+    if (text.size() > kMaxJsonBytes) fail(ExitCode::InvalidConfig, "{} holds more than {} bytes", name, kMaxJsonBytes);
     auto value = std::make_shared<const Json>(parseJson(text, name));
     auto shared = std::make_shared<const std::string>(std::move(text));
     return {std::move(value), std::make_shared<const JsonSource>(JsonSource{std::move(name), std::move(shared), {}})};

@@ -187,7 +187,6 @@ std::string placeOf(std::string_view name, std::string_view text, std::size_t of
 }
 
 Json parseJson(std::string_view text, std::string_view name) {
-    if (text.size() > kMaxJsonBytes) fail(ExitCode::InvalidConfig, "{} holds more than {} bytes", name, kMaxJsonBytes);
     // The parser would take a zero byte for the end of the text.
     if (const std::size_t zero = text.find('\0'); zero != std::string_view::npos)
         fail(ExitCode::InvalidConfig, "{}: expected UTF-8 text, found a zero byte", placeOf(name, text, zero));

@@ -36,7 +36,7 @@ TextPosition positionAt(std::string_view text, std::size_t offset);
 /// "file:line:column"
 std::string placeOf(std::string_view name, std::string_view text, std::size_t offset);
 
-/// The value of a text, with the refusals of JsonDocument; `name` stands for the file in messages.
+/// The value of a text of any length, with the other refusals of JsonDocument; `name` stands for the file in messages.
 Json parseJson(std::string_view text, std::string_view name);
 
 /// One step of a JSON pointer with "~" and "/" escaped, and the steps of a whole pointer unescaped (RFC 6901).

@@ -167,6 +167,8 @@ std::vector<std::string> workOptions(const CLI::App& command) {
 }
 
 void runExperiment(const RunArguments& a) {
+    if (!a.jobs.empty() && !a.viewer->empty())
+        fail(ExitCode::Usage, "--tev shows what this process renders, and with --jobs it renders nothing: leave out one of them");
     JsonDocument document = readExperiment(a.experiment);
     document.applyOverrides(a.assignments);
     const std::optional<Tuning> tuning = plannedTuning(document);
@@ -227,7 +229,7 @@ void runExperiment(const RunArguments& a) {
     if (tuning) summary["tuning"] = tuned;
     writeSummary(options.runDir, summary);
     judging.update(1, "report");
-    writeReport(options.runDir);
+    writeReport(options.runDir, summary);
     judging.clear();
     printResults(summary, options.runDir, a);
     if (!outcome.failures.empty()) {

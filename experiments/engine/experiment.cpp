@@ -5,6 +5,7 @@
 
 #include "core/config/suggest.h"
 #include "core/image/metrics.h"
+#include "core/scene/plugins.h"
 #include "experiments/engine/result.h"
 
 namespace ulam {
@@ -18,6 +19,17 @@ void checkName(const JsonNode& node, const std::string& name) {
     if (name.empty() || name.size() > 64 || !std::all_of(name.begin(), name.end(), allowed))
         node.fail(fmt::format("expected a name of at most 64 letters, digits, \"_\", \"-\" and \"+\", found {}",
                               inQuotes(name)));
+}
+
+/// A scene's film may have options of Mitsuba that mean nothing here; in an experiment they are mistakes. The values are
+/// checked when a scene is built.
+void checkFilm(const JsonNode& film) {
+    if (!film.isObject()) film.expected("an object with width and height");
+    const PluginInfo plugin = scenePlugins(PluginKind::Films).front();
+    std::vector<std::string> names{"type"};
+    for (const ParameterInfo& parameter : plugin.parameters) names.push_back(parameter.name);
+    film.allowOnly("film option", names);
+    if (const auto type = film.find("type"); type && type->string() != plugin.name) unknownName("film", type->string(), {plugin.name}, type->where());
 }
 
 /// The sampler's parameters with the depth that all share.
@@ -180,7 +192,7 @@ Experiment parseExperiment(const JsonNode& root, const fs::path& folder, const s
     e.film = p.film.json();
     for (const char* key : {"film", "scenes", "sweep", "scene", "until", "tune"})
         if (const auto node = root.find(key); node && node->isNull()) node->expected("a value");
-    if (!p.film.isNull() && !p.film.isObject()) p.film.expected("an object with width and height");
+    if (!p.film.isNull()) checkFilm(p.film);
     e.maxDepth = p.maxDepth;
     e.replicates = p.replicates;
     e.seed = p.seed;

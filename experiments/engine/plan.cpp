@@ -27,6 +27,20 @@ std::string sweptOrigin(const SweepValue& value) {
     return fmt::format("sweep {}={}", value.path, value.value.dump());
 }
 
+/// Of a cell's folder. File systems take names of up to 255 bytes.
+std::string cellName(const std::string& scene, const std::string& sampler, const std::vector<SweepValue>& values) {
+    constexpr std::size_t kLongest = 200;
+    std::string name = fmt::format("{}-{}", scene, sampler), shorter = name;
+    for (const SweepValue& value : values) {
+        name += "," + value.label;
+        shorter += "," + value.shortLabel;
+    }
+    if (name.size() <= kLongest) return name;
+    if (shorter.size() <= kLongest) return shorter;
+    const std::string end = ",hash=" + sha256(name).substr(0, 16);
+    return shorter.substr(0, shorter.rfind(',', kLongest - end.size())) + end;
+}
+
 class Planner {
 public:
     Planner(const JsonDocument& document, const fs::path& file) : document_(document), file_(file) {}
@@ -36,12 +50,32 @@ public:
         plan_.experiment = root.json();
         plan_.source = fs::absolute(file_).lexically_normal().string();  // for those who plan again elsewhere
         const std::optional<JsonNode> sweep = root.isObject() ? root.find("sweep") : std::nullopt;
-        const std::vector<SweepPoint> points = sweep ? expandSweep(*sweep, root) : std::vector<SweepPoint>(1);
+        if (sweep) openScenes(*sweep);
+        const std::vector<SweepPoint> points = sweep ? expandSweep(*sweep, document_.root()) : std::vector<SweepPoint>(1);
         for (const SweepPoint& point : points) addPoint(point);
         return std::move(plan_);
     }
 
 private:
+    /// Where a sweep leads into a scene that is a file, what is in the file takes the place of its name.
+    void openScenes(const JsonNode& sweep) {
+        if (!sweep.isObject()) return;
+        for (const auto& [path, values] : sweep.members()) {
+            if (path == "zip") openScenes(values);
+            const std::vector<std::string> steps = pathSteps(path);
+            const std::size_t depth = steps[0] == "scene" ? 1 : 2;
+            if ((steps[0] != "scene" && steps[0] != "scenes") || steps.size() <= depth) continue;
+            std::optional<JsonNode> scene = document_.root().find(steps[0]);
+            if (scene && depth == 2) scene = scene->isObject() ? scene->find(steps[1]) : std::nullopt;
+            if (!scene || !scene->isString()) continue;
+            const fs::path file = file_.parent_path() / scene->string();
+            const JsonDocument content = readSceneDocument(file);
+            if (!content.json().is_object()) content.root().expected("a scene or a generator, an object with a \"type\"");
+            folders_[steps[depth - 1]] = file.parent_path();
+            document_.set(depth == 1 ? "scene" : "scenes." + steps[1], content.json(), file.string());
+        }
+    }
+
     void addPoint(const SweepPoint& point) {
         JsonDocument document = document_;
         for (const SweepValue& value : point) document.set(value.path, value.value, sweptOrigin(value));
@@ -69,7 +103,9 @@ private:
         auto& known = scenes_[key];
         if (known) return known;
         const auto start = std::chrono::steady_clock::now();
-        const SceneDescription description = SceneDescription::fromNode(scene.node, e.folder);
+        const auto opened = folders_.find(scene.name);
+        const SceneDescription description =
+            SceneDescription::fromNode(scene.node, opened == folders_.end() ? e.folder : opened->second);
         auto planned = std::make_shared<PlannedScene>();
         planned->name = scene.name;
         planned->film = e.film;
@@ -144,12 +180,11 @@ private:
         Cell cell;
         cell.reference = reference;
         Task& task = cell.task;
-        task.name = fmt::format("{}-{}", scene->name, sampler.name);
-        for (const SweepValue& value : point) {
-            if (!affects(value, scene->name, sampler.name)) continue;
-            task.name += "," + value.label;
-            cell.sweep[value.path] = value.value;
-        }
+        std::vector<SweepValue> own;
+        for (const SweepValue& value : point)
+            if (affects(value, scene->name, sampler.name)) own.push_back(value);
+        for (const SweepValue& value : own) cell.sweep[value.path] = value.value;
+        task.name = cellName(scene->name, sampler.name, own);
         task.stream = e.commonRandomNumbers ? "common random numbers" : task.name;
         task.scene = scene;
         task.sampler = sampler.name;
@@ -168,9 +203,10 @@ private:
         if (compared_.emplace(comparison.cell, comparison.baseline).second) plan_.comparisons.push_back(comparison);
     }
 
-    const JsonDocument& document_;
+    JsonDocument document_;
     const fs::path& file_;
     Plan plan_;
+    std::map<std::string, fs::path> folders_;  ///< of scenes that were opened, where relative names in them start
     std::map<std::string, std::shared_ptr<const PlannedScene>> scenes_;
     std::map<std::string, std::size_t> cells_;
     std::set<std::pair<std::size_t, std::size_t>> compared_;

@@ -17,15 +17,16 @@
 namespace ulam {
 namespace {
 
-/// The value of the first "key : value" line of a file of the kernel; empty where there is none.
-std::string kernelValue(const char* file, std::string_view key) {
+/// What follows the separator in the first line of a file that begins with the key, without blanks and quotes around it;
+/// empty where there is none.
+std::string lineValue(const char* file, std::string_view key, char separator) {
     std::ifstream stream(file);
     for (std::string line; std::getline(stream, line);) {
-        if (!line.starts_with(key)) continue;
-        const std::size_t colon = line.find(':');
-        if (colon == line.npos) continue;
-        const std::size_t begin = line.find_first_not_of(" \t", colon + 1);
-        return begin == line.npos ? "" : line.substr(begin);
+        const std::size_t end = line.find(separator);
+        if (!line.starts_with(key) || end == line.npos) continue;
+        constexpr const char* kAround = " \t\"'";
+        const std::size_t begin = line.find_first_not_of(kAround, end + 1);
+        return begin == line.npos ? "" : line.substr(begin, line.find_last_not_of(kAround) + 1 - begin);
     }
     return "";
 }
@@ -35,6 +36,10 @@ const char* const kExecutable = "/proc/self/exe";
 std::string& mutableCodeHash() {
     static std::string hash = sha256OfFile(kExecutable);
     return hash;
+}
+
+std::string kernelValue(const char* file, std::string_view key) {
+    return lineValue(file, key, ':');
 }
 
 }  // namespace
@@ -118,7 +123,7 @@ Json provenance(const std::vector<std::string>& arguments) {
           {"system", system.sysname},
           {"kernel", system.release},
           {"architecture", system.machine},
-          {"distribution", kernelValue("/etc/os-release", "PRETTY_NAME")},
+          {"distribution", lineValue("/etc/os-release", "PRETTY_NAME", '=')},
           {"cpu", processorName()},
           {"cpu_flags", kernelValue("/proc/cpuinfo", "flags")},
           {"cores", std::thread::hardware_concurrency()},

@@ -5,6 +5,7 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/config/difference.h"
+#include "core/config/json_text.h"
 #include "experiments/engine/lease.h"
 #include "experiments/engine/replicate.h"
 
@@ -15,13 +16,13 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMostDifferences = 5;  // in a message
 
-JsonDocument readResolved(const fs::path& runDir) {
+Json readResolved(const fs::path& runDir) {
     const fs::path file = runDir / "resolved.json";
     std::error_code ignored;
     if (!fs::exists(file, ignored))
         fail(ExitCode::InputMissing, "{} is no folder of a run: expected resolved.json in it, as ulam run writes it",
              runDir.string());
-    return JsonDocument::fromFile(file);
+    return readOwnJson(file);
 }
 
 std::map<std::string, Json> cellsByName(const Json& resolved) {
@@ -123,8 +124,12 @@ Json statusOfReference(const std::string& key, const Json& reference, const fs::
 
 }  // namespace
 
+Json readOwnJson(const fs::path& file) {
+    return parseJson(readFile(file), file.string());
+}
+
 Plan planOfRun(const fs::path& runDir) {
-    const Json resolved = readResolved(runDir).json();
+    const Json resolved = readResolved(runDir);
     Plan plan = makePlan(JsonDocument::fromFile(runDir / "experiment.json"), resolved["source"].get<std::string>());
     addReplicates(plan, resolved);
     const std::vector<std::string> found = differences(resolved, plan.resolved());
@@ -140,13 +145,12 @@ Plan planOfRun(const fs::path& runDir) {
 
 std::vector<Plan::Replicate> addedReplicates(Plan& plan, const fs::path& runDir) {
     const std::vector<int> before = plan.replicatesOfCells();
-    if (plan.until) addReplicates(plan, readResolved(runDir).json());
+    if (plan.until) addReplicates(plan, readResolved(runDir));
     return plan.order(before);
 }
 
 Json statusOfRun(const fs::path& runDir) {
-    const JsonDocument document = readResolved(runDir);
-    const Json& resolved = document.json();
+    const Json resolved = readResolved(runDir);
     Json references = Json::array(), cells = Json::array(),
          totals = {{"replicates", 0}, {"done", 0}, {"missing", 0}, {"running", 0}, {"expired", 0}, {"failed", 0}};
     for (const auto& [key, reference] : resolved["references"].items())

@@ -7,6 +7,9 @@
 
 namespace ulam {
 
+/// A file that the program wrote: of any size, unlike those of users.
+Json readOwnJson(const std::filesystem::path& file);
+
 /// The plan, made again from experiment.json. Relative paths in it start where the experiment's file was. Fails with
 /// InputMissing where the folder holds no run, and with InvalidConfig where this program plans other tasks or
 /// references than resolved.json names, saying which and why.

@@ -3,6 +3,7 @@
 #include "core/base/error.h"
 #include "core/image/metrics.h"
 #include "core/mcmc/target.h"
+#include "core/scene/loading/sensors.h"
 #include "core/scene/plugins.h"
 #include "experiments/engine/experiment.h"
 #include "experiments/engine/sweep_values.h"
@@ -79,6 +80,17 @@ Json samplerSchema(const Registry<Sampler>::Entry& entry) {
     properties.erase("max_depth");
     if (properties.contains("target")) refine(schema, "target", {{"enum", Registry<Importance>::instance().names()}, {"default", properties["target"]["default"]}});
     if (properties.contains("mutations")) refine(schema, "mutations", mixSchema(entry.name));
+    return schema;
+}
+
+/// What stands for a part of the film of every scene.
+Json filmSchema() {
+    Json schema = pluginSchema(scenePlugins(PluginKind::Films).front());
+    schema.erase("required");
+    std::vector<Json> filters;
+    for (const PluginInfo& filter : scenePlugins(PluginKind::Filters)) filters.push_back(pluginSchema(filter));
+    filters.push_back({{"type", "object"}, {"properties", {{"type", {{"enum", replacedFilters()}}}}}, {"required", Json::array({"type"})}});
+    refine(schema, "rfilter", anyOf(filters));
     return schema;
 }
 
@@ -161,8 +173,11 @@ Json experimentSchema() {
 
     definitions["sweepValues"] = sweepValuesSchema();
 
-    Json metricNames = Json::array();
-    for (const Metric& metric : metrics()) metricNames.push_back(metric.name);
+    Json metricNames = Json::array(), errorNames = Json::array();
+    for (const Metric& metric : metrics()) {
+        metricNames.push_back(metric.name);
+        if (!metric.higherIsBetter) errorNames.push_back(metric.name);
+    }
 
     Json schema = {{"$schema", "http://json-schema.org/draft-07/schema#"}, {"title", "Ulam experiment"}};
     schema.update(jsonSchema(parameterInfo<ExperimentParameters>()));
@@ -170,12 +185,16 @@ Json experimentSchema() {
     refine(schema, "scenes", namedLike(reference("scene")));
     schema["properties"]["name"]["pattern"] = "^[A-Za-z0-9_+-]{0,64}$";
     schema["properties"]["max_depth"]["maximum"] = largestDepth();
-    refine(schema, "film", {{"type", "object"}});
+    refine(schema, "film", filmSchema());
     refine(schema, "samplers", namedLike(reference("sampler")));
     refine(schema, "budget", reference("budget"));
     refine(schema, "until", jsonSchema(parameterInfo<UntilParameters>()));
     refine(schema, "metrics",
-           {{"type", "array"}, {"items", {{"enum", metricNames}}}, {"minItems", 1}, {"uniqueItems", true}});
+           {{"type", "array"},
+            {"items", Json::array({{{"enum", errorNames}}})},  // of the first
+            {"additionalItems", {{"enum", metricNames}}},
+            {"minItems", 1},
+            {"uniqueItems", true}});
     Json byScene = namedLike(reference("reference"));
     byScene["not"] = anyOf({{{"required", Json::array({"sampler"})}}, {{"required", Json::array({"budget"})}}, {{"required", Json::array({"image"})}}});
     refine(schema, "reference", anyOf({reference("reference"), byScene}));

@@ -242,6 +242,7 @@ Json summarize(const Plan& plan, const fs::path& runDir, const std::vector<Failu
 void writeSummary(const fs::path& runDir, const Json& summary) {
     writeFileAtomically(runDir / "summary.json", dump(summary) + "\n");
     writeFileAtomically(runDir / "summary.csv", summaryCsv(summary));
+    writeFileAtomically(runDir / "comparisons.csv", comparisonsCsv(summary));
     writeFileAtomically(runDir / "summary.md", summaryMarkdown(summary));
     writeFileAtomically(runDir / "summary.tex", summaryLatex(summary));
 }

@@ -29,10 +29,11 @@ using BeforeCell = std::function<void(double fraction, const std::string& cell)>
 Json summarize(const Plan& plan, const std::filesystem::path& runDir, const std::vector<Failure>& failures,
                int threads = 1, const BeforeCell& beforeCell = {});
 
-/// summary.json, summary.csv, summary.md and summary.tex.
+/// summary.json, summary.csv, comparisons.csv, summary.md and summary.tex.
 void writeSummary(const std::filesystem::path& runDir, const Json& summary);
 
 std::string summaryCsv(const Json& summary);
+std::string comparisonsCsv(const Json& summary);
 std::string summaryMarkdown(const Json& summary);
 std::string summaryLatex(const Json& summary);
 

@@ -1,8 +1,11 @@
-// The summary as tables: one row a cell and metric (CSV), one a cell (Markdown, LaTeX).
+// The summary as tables: one row a cell and metric, and one a comparison (CSV), one a cell (Markdown, LaTeX).
 
+#include <algorithm>
+#include <map>
 #include <regex>
 
 #include "experiments/engine/summary.h"
+#include "experiments/engine/sweep.h"
 
 namespace ulam {
 namespace {
@@ -15,10 +18,40 @@ std::string text(const Json& value, const char* format = "{:.4g}") {
 
 std::string csvField(const Json& value) {
     const std::string plain = text(value, "{}");
-    if (plain.find_first_of(",\"\n") == plain.npos) return plain;
+    if (plain.find_first_of(",\"\r\n") == plain.npos) return plain;
     std::string quoted = "\"";
     for (const char c : plain) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
     return quoted + "\"";
+}
+
+std::string csvRow(const std::vector<Json>& values) {
+    std::vector<std::string> fields;
+    for (const Json& value : values) fields.push_back(csvField(value));
+    return fmt::format("{}\n", fmt::join(fields, ","));
+}
+
+/// The first or second end of what may be an interval.
+Json endOf(const Json& interval, std::size_t end) {
+    return interval.is_array() ? interval[end] : Json();
+}
+
+/// Of all cells, in the order in which they come up.
+std::vector<std::string> sweptPaths(const Json& summary) {
+    std::vector<std::string> paths;
+    for (const Json& cell : summary["cells"])
+        for (const auto& [path, value] : cell["sweep"].items())
+            if (std::ranges::find(paths, path) == paths.end()) paths.push_back(path);
+    return paths;
+}
+
+/// The names of columns, those of swept values at the end.
+std::string csvHeader(std::vector<Json> names, const std::vector<std::string>& paths) {
+    for (const std::string& path : paths) names.push_back("sweep." + path);
+    return csvRow(names);
+}
+
+void addSwept(std::vector<Json>& row, const Json& cell, const std::vector<std::string>& paths) {
+    for (const std::string& path : paths) row.push_back(cell["sweep"].value(path, Json()));
 }
 
 std::string intervalText(const Json& interval, const char* to) {
@@ -29,8 +62,20 @@ std::string intervalText(const Json& interval, const char* to) {
 std::string latexText(const std::string& plain) {
     std::string safe;
     for (const char c : plain) {
-        if (std::string_view("_&%$#{}").find(c) != std::string_view::npos) safe += '\\';
-        safe += c;
+        switch (c) {
+            case '\\':
+                safe += "\\textbackslash{}";
+                break;
+            case '^':
+                safe += "\\textasciicircum{}";
+                break;
+            case '~':
+                safe += "\\textasciitilde{}";
+                break;
+            default:
+                if (std::string_view("_&%$#{}").find(c) != std::string_view::npos) safe += '\\';
+                safe += c;
+        }
     }
     return safe;
 }
@@ -64,21 +109,38 @@ CellVerdict verdictOf(const Json& summary, const Json& cell, const char* to) {
 }  // namespace
 
 std::string summaryCsv(const Json& summary) {
-    std::string csv =
-        "cell,scene,sampler,replicates,metric,mean,ci95_low,ci95_high,trimmed_mean,worst_replicate,variance,bias_"
-        "squared,seconds,rays,mutations,normalization_cv\n";
+    const std::vector<std::string> paths = sweptPaths(summary);
+    std::string csv = csvHeader({"cell", "scene", "sampler", "replicates", "metric", "mean", "ci95_low", "ci95_high", "trimmed_mean",
+                                 "worst_replicate", "variance", "bias_squared", "seconds", "rays", "mutations", "normalization_cv"},
+                                paths);
     for (const Json& cell : summary["cells"]) {
         for (const auto& [name, metric] : cell["metrics"].items()) {
-            const Json low = metric["ci95"].is_array() ? metric["ci95"][0] : Json(),
-                       high = metric["ci95"].is_array() ? metric["ci95"][1] : Json();
-            std::vector<std::string> row;
-            for (const Json& value :
-                 {cell["cell"], cell["scene"], cell["sampler"], cell["replicates"], Json(name), metric["mean"], low,
-                  high, metric["trimmed_mean"], metric["worst_replicate"], cell["variance"], cell["bias_squared"],
-                  cell["seconds"], cell["rays"], cell["mutations"], cell["normalization_cv"]})
-                row.push_back(csvField(value));
-            csv += fmt::format("{}\n", fmt::join(row, ","));
+            std::vector<Json> row{cell["cell"], cell["scene"], cell["sampler"], cell["replicates"], name, metric["mean"],
+                                  endOf(metric["ci95"], 0), endOf(metric["ci95"], 1), metric["trimmed_mean"],
+                                  metric["worst_replicate"], cell["variance"], cell["bias_squared"], cell["seconds"], cell["rays"],
+                                  cell["mutations"], cell["normalization_cv"]};
+            addSwept(row, cell, paths);
+            csv += csvRow(row);
         }
+    }
+    return csv;
+}
+
+std::string comparisonsCsv(const Json& summary) {
+    const std::vector<std::string> paths = sweptPaths(summary);
+    std::map<std::string, const Json*> cells;
+    for (const Json& cell : summary["cells"]) cells[cell["cell"].get<std::string>()] = &cell;
+    std::string csv = csvHeader({"cell", "baseline_cell", "scene", "sampler", "baseline", "metric", "ratio", "ci95_low", "ci95_high",
+                                 "speedup", "speedup_ci95_low", "speedup_ci95_high", "p", "p_adjusted", "verdict",
+                                 "detectable_ratio", "reference_too_poor", "heavy_tailed"},
+                                paths);
+    for (const Json& c : summary["comparisons"]) {
+        std::vector<Json> row{c["cell"], c["baseline_cell"], c["scene"], c["sampler"], c["baseline"], c["metric"], c["ratio"],
+                              endOf(c["ci95"], 0), endOf(c["ci95"], 1), c["speedup"], endOf(c["speedup_ci95"], 0),
+                              endOf(c["speedup_ci95"], 1), c["p"], c["p_adjusted"], c["verdict"], c["detectable_ratio"],
+                              c["reference_too_poor"], c["heavy_tailed"]};
+        addSwept(row, *cells.at(c["cell"].get<std::string>()), paths);
+        csv += csvRow(row);
     }
     return csv;
 }
@@ -111,6 +173,7 @@ std::string summaryMarkdown(const Json& summary) {
 
 std::string summaryLatex(const Json& summary) {
     const std::string metric = summary["primary_metric"].get<std::string>();
+    const std::vector<std::string> paths = sweptPaths(summary);
     std::string tex = fmt::format(
         "% needs the package booktabs\n\\begin{{tabular}}{{llrrrrl}}\n\\toprule\nscene & sampler & {} & 95\\,\\% & "
         "ratio & $p$ & verdict \\\\\n\\midrule\n",
@@ -119,7 +182,7 @@ std::string summaryLatex(const Json& summary) {
         const CellVerdict v = verdictOf(summary, cell, "--");
         std::string sampler = text(cell["sampler"]);
         for (const auto& [path, value] : cell["sweep"].items())
-            sampler += fmt::format(", {} {}", path.substr(path.find_last_of('.') + 1), text(value));
+            sampler += fmt::format(", {} {}", shortName(path, paths), text(value));
         const Json& error = cell["metrics"][metric];
         tex +=
             fmt::format("{} & {} & {} & {} & {} & {} & {} \\\\\n", latexText(text(cell["scene"])), latexText(sampler),

@@ -80,7 +80,7 @@ std::string valueText(const Json& value) {
     return text;
 }
 
-Axis makeAxis(const std::string& path, const std::vector<Json>& values, const std::string& shortName) {
+Axis makeAxis(const std::string& path, const std::vector<Json>& values, const std::vector<std::string>& paths) {
     constexpr std::size_t kLongest = 24;
     std::map<nlohmann::json, std::size_t> firsts;  // a zip may repeat a value in a column, which is the same value then
     std::vector<std::size_t> numbers;
@@ -94,20 +94,14 @@ Axis makeAxis(const std::string& path, const std::vector<Json>& values, const st
                 texts.try_emplace(text, number).first->second == number;
     }
     const bool numbered = !plain;  // dictionaries, long texts, and values that would look alike
+    const std::string shortest = shortName(path, paths);
+    const std::string& name = shortest.find('.') == shortest.npos ? shortest : path;
     Axis axis;
     for (std::size_t i = 0; i < values.size(); ++i) {
         const std::string text = numbered ? fmt::format("no{}", numbers[i]) : valueText(values[i]);
-        axis.push_back({SweepValue{path, values[i], fmt::format("{}={}", shortName, text)}});
+        axis.push_back({SweepValue{path, values[i], fmt::format("{}={}", name, text), fmt::format("{}={}", shortest, text)}});
     }
     return axis;
-}
-
-/// A key's last step, or all of it where another key ends the same way.
-std::string shortName(const std::string& path, const std::vector<std::string>& paths) {
-    const auto last = [](const std::string& p) { return p.substr(p.find_last_of('.') + 1); };
-    const auto same =
-        std::count_if(paths.begin(), paths.end(), [&](const std::string& p) { return last(p) == last(path); });
-    return same > 1 ? path : last(path);
 }
 
 /// The values of a key, where those of a range are drawn by the experiment's seed.
@@ -128,7 +122,7 @@ std::vector<Json> distinct(const JsonNode& node, std::vector<Json> values) {
 Axis zipAxis(const JsonNode& node, const std::vector<std::string>& paths, const JsonNode& experiment) {
     Axis axis;
     for (const auto& [path, values] : node.members()) {
-        const Axis column = makeAxis(path, valuesOf(values, path, experiment), shortName(path, paths));
+        const Axis column = makeAxis(path, valuesOf(values, path, experiment), paths);
         if (axis.empty()) axis.resize(column.size());
         if (column.size() != axis.size())
             values.expected(fmt::format("{} values as in the first list of the zip", axis.size()));
@@ -168,7 +162,7 @@ std::vector<SweepPoint> expandSweep(const JsonNode& sweep, const JsonNode& exper
     for (const auto& [path, node] : sweep.members()) {
         if (path == "where") continue;
         axes.push_back(path == "zip" ? zipAxis(node, paths, experiment)
-                                     : makeAxis(path, distinct(node, valuesOf(node, path, experiment)), shortName(path, paths)));
+                                     : makeAxis(path, distinct(node, valuesOf(node, path, experiment)), paths));
         refuseRepeated(axes.back(), node);
         // Before any point is made, and without computing a product that could overflow.
         if (axes.back().size() > kMostPoints / count)
@@ -194,6 +188,15 @@ std::vector<SweepPoint> expandSweep(const JsonNode& sweep, const JsonNode& exper
     });
     if (points.empty()) sweep.at("where").fail("no point of the sweep meets the conditions");
     return points;
+}
+
+std::string shortName(const std::string& path, const std::vector<std::string>& paths) {
+    for (std::size_t dot = path.rfind('.'); dot != path.npos; dot = path.rfind('.', dot - 1)) {
+        const std::string end = path.substr(dot);
+        if (std::ranges::count_if(paths, [&](const std::string& p) { return ('.' + p).ends_with(end); }) == 1)
+            return end.substr(1);
+    }
+    return path;
 }
 
 bool affects(const SweepValue& value, const std::string& scene, const std::string& sampler) {

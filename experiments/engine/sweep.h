@@ -12,7 +12,8 @@ namespace ulam {
 struct SweepValue {
     std::string path;  ///< "samplers.mlt.chains"
     Json value;
-    std::string label;  ///< "chains=100", fit for a folder's name
+    std::string label;       ///< "chains=100", fit for a folder's name
+    std::string shortLabel;  ///< the same with fewer steps of the path, for where many labels make a long name
 };
 
 /// One point of the grid; empty for an experiment without a sweep.
@@ -23,6 +24,9 @@ using SweepPoint = std::vector<SweepValue>;
 /// belong to the whole run, at keys that overwrite each other, and at equal points; `experiment` is what the paths lead
 /// into.
 std::vector<SweepPoint> expandSweep(const JsonNode& sweep, const JsonNode& experiment);
+
+/// The last steps of a path, as many as tell it from all other `paths`: "mlt.chains".
+std::string shortName(const std::string& path, const std::vector<std::string>& paths);
 
 /// Does a value touch a cell of this scene and sampler? Keys of other scenes and samplers do not.
 bool affects(const SweepValue& value, const std::string& scene, const std::string& sampler);

@@ -50,6 +50,17 @@ void spellOutSampler(Json& reference, const Json& samplers) {
     sampler = Json(samplers[sampler.get<std::string>()]);
 }
 
+/// A dry run tells of what cannot be run, too.
+void checkCandidates(const JsonDocument& experiment, const std::vector<SweepPoint>& candidates) {
+    const fs::path folder = fs::path(experiment.name()).parent_path();
+    for (const SweepPoint& point : candidates) {
+        JsonDocument candidate = experiment;
+        for (const SweepValue& value : point)
+            candidate.set(value.path, value.value, fmt::format("tune.sweep {}={}", value.path, value.value.dump()));
+        parseExperiment(candidate.root(), folder, "tuning");
+    }
+}
+
 /// By candidate, the mean over the scenes of the log of the mean error; infinite for one that failed.
 std::map<std::size_t, double> scores(const Plan& plan, const fs::path& runDir, const std::vector<std::size_t>& candidates) {
     std::map<std::string, std::vector<double>> logs;
@@ -100,6 +111,7 @@ std::optional<Tuning> plannedTuning(JsonDocument& experiment) {
     const JsonNode samplers = root.at("samplers");
     if (const auto taken = samplers.find(untuned)) taken->fail(fmt::format("{} names the sampler before tuning", inQuotes(untuned)));
     experiment.set("samplers." + untuned, samplers.at(tuning.sampler).json(), "the sampler before tuning");
+    checkCandidates(experiment, tuning.candidates);
     return tuning;
 }
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <charconv>
 
+#include "experiments/engine/run_folder.h"
+
 namespace ulam {
 namespace {
 
@@ -57,7 +59,7 @@ std::vector<std::pair<int, int>> techniquesIn(const fs::path& replicate) {
 }  // namespace
 
 Json readJsonIfThere(const fs::path& path) {
-    return fs::exists(path) ? JsonDocument::fromFile(path).json() : Json();
+    return fs::exists(path) ? readOwnJson(path) : Json();
 }
 
 fs::path techniqueFile(const fs::path& replicate, std::pair<int, int> technique, std::string_view kind) {

@@ -91,7 +91,7 @@ bool LiveReport::isSummaryOf(const Seen& seen) {
     if (seen.summarized < seen.planned) return false;
     if (summarized_.first != seen.summarized) {
         int replicates = 0;
-        const Json summary = JsonDocument::fromFile(runDir_ / "summary.json").json();
+        const Json summary = readOwnJson(runDir_ / "summary.json");
         for (const Json& cell : summary.value("cells", Json::array())) replicates += cell.value("replicates", 0);
         summarized_ = {seen.summarized, replicates};
     }
@@ -99,7 +99,7 @@ bool LiveReport::isSummaryOf(const Seen& seen) {
 }
 
 Json LiveReport::summary(const Seen& seen) {
-    if (seen.finished) return JsonDocument::fromFile(runDir_ / "summary.json").json();
+    if (seen.finished) return readOwnJson(runDir_ / "summary.json");
     if (planned_ != seen.planned) {
         plan_.reset();  // two at a time may not have room
         plan_ = planOfRun(runDir_);

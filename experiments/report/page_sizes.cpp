@@ -22,34 +22,31 @@ constexpr int kTechniqueEdge = 128;  ///< pixels, of the images of techniques
 constexpr double kMapShare = 0.2;
 constexpr int kPicturesOfCell = 3;  ///< mean, median and worst replicate
 
-/// The film is the experiment's, so one image tells the size of all.
-double pixelsOf(const std::vector<CellPlan>& plans) {
-    for (const CellPlan& plan : plans)
-        if (!plan.replicates.empty()) return double(readImage((plan.folder() / "image.exr").string()).pixels.size());
-    return 0;
+/// What the images of all cells take. A sweep or a scene may give a cell a film of its own.
+struct Sizes {
+    double largest = 0;                           ///< film, in pixels
+    double pictures = 0, maps = 0, techniques = 0;  ///< bytes of base64 of all, not shrunk, pictures as RGB9E5
+};
+
+double pixelsOf(const fs::path& image) {
+    return double(readImage(image.string()).pixels.size());
 }
 
-std::set<fs::path> referencesOf(const std::vector<CellPlan>& plans) {
+Sizes sizesOf(const std::vector<CellPlan>& plans) {
+    Sizes sizes;
     std::set<fs::path> references;
-    for (const CellPlan& plan : plans)
-        if (plan.reference) references.insert(*plan.reference);
-    return references;
-}
-
-/// Bytes of base64 that the pictures of all cells take for a pixel of the film, as RGB9E5.
-double exactPictureBytes(const std::vector<CellPlan>& plans) {
-    const auto cells = std::ranges::count_if(plans, [](const CellPlan& plan) { return !plan.replicates.empty(); });
-    return base64Size(4 * (kPicturesOfCell * double(cells) + double(referencesOf(plans).size())));
-}
-
-/// The same of their maps, of which each has a byte for a block.
-double mapBytes(const std::vector<CellPlan>& plans) {
-    double bytes = 0;
     for (const CellPlan& plan : plans) {
-        if (!plan.replicates.empty()) bytes += plan.reference ? 2 : 1;
-        if (plan.hasChains()) bytes += 1 + 1.0 / (kRhatBlock * kRhatBlock);
+        if (plan.reference && references.insert(*plan.reference).second) sizes.pictures += base64Size(4 * pixelsOf(*plan.reference));
+        if (plan.replicates.empty()) continue;
+        const double pixels = pixelsOf(plan.folder() / "image.exr");
+        sizes.largest = std::max(sizes.largest, pixels);
+        sizes.pictures += base64Size(4 * kPicturesOfCell * pixels);
+        // A map has a byte for a block.
+        const double chainMaps = plan.hasChains() ? 1 + 1.0 / (kRhatBlock * kRhatBlock) : 0;
+        sizes.maps += base64Size((plan.reference ? 2 : 1) + chainMaps) * pixels;
+        sizes.techniques += base64Size(4 * 2 * double(plan.techniques.size()) * pixels);
     }
-    return base64Size(bytes);
+    return sizes;
 }
 
 /// The smallest factor by whose square the bytes must be divided to be at most `most`.
@@ -74,35 +71,32 @@ bool jpegsFit(const std::vector<CellPlan>& plans, int factor, double most) {
 }
 
 /// Pictures and maps in what the rest leaves.
-void fitPictures(const std::vector<CellPlan>& plans, double pixels, double most, PageSizes& sizes) {
-    const double bytesOfMaps = pixels * mapBytes(plans);
-    sizes.exact = pixels * exactPictureBytes(plans) + bytesOfMaps <= most;
+void fitPictures(const std::vector<CellPlan>& plans, const Sizes& full, double most, PageSizes& sizes) {
+    sizes.exact = full.pictures + full.maps <= most;
     if (sizes.exact) return;
-    sizes.maps = shrinkFactor(bytesOfMaps, kMapShare * most);
-    const double left = most - bytesOfMaps / (double(sizes.maps) * sizes.maps);
-    while (sizes.pictures * sizes.pictures < pixels && !jpegsFit(plans, sizes.pictures, left)) ++sizes.pictures;
+    sizes.maps = shrinkFactor(full.maps, kMapShare * most);
+    const double left = most - full.maps / (double(sizes.maps) * sizes.maps);
+    while (sizes.pictures * sizes.pictures < full.largest && !jpegsFit(plans, sizes.pictures, left)) ++sizes.pictures;
 }
 
 }  // namespace
 
 PageSizes choosePageSizes(const std::vector<CellPlan>& plans) {
-    const double pixels = pixelsOf(plans);
-    double techniques = 0, chains = 0, chainBytes = 0;
+    const Sizes full = sizesOf(plans);
+    double chains = 0, chainBytes = 0;
     for (const CellPlan& plan : plans) {
-        techniques += 2 * double(plan.techniques.size());
         if (!plan.hasChains()) continue;
         ++chains;
         const Json& traces = plan.result["traces"];
         chainBytes += base64Size(kDrawBytes * traces.at("chains").get<double>() * traces.at("draws").get<double>());
     }
     PageSizes sizes;
-    const double techniqueBytes = base64Size(4 * techniques * pixels);
-    sizes.techniques = std::max(shrinkFactor(techniqueBytes, kTechniqueBytes),
-                                shrinkFactor(pixels, double(kTechniqueEdge) * kTechniqueEdge));
+    sizes.techniques = std::max(shrinkFactor(full.techniques, kTechniqueBytes),
+                                shrinkFactor(full.largest, double(kTechniqueEdge) * kTechniqueEdge));
     if (chains > 0) sizes.chainBytes = kChainBytes / chains;
     const double others =
-        techniqueBytes / (double(sizes.techniques) * sizes.techniques) + std::min(chainBytes, kChainBytes);
-    fitPictures(plans, pixels, kReportImageBytes - others, sizes);
+        full.techniques / (double(sizes.techniques) * sizes.techniques) + std::min(chainBytes, kChainBytes);
+    fitPictures(plans, full, kReportImageBytes - others, sizes);
     return sizes;
 }
 

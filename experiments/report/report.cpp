@@ -7,7 +7,7 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
-#include "core/config/json.h"
+#include "experiments/engine/run_folder.h"
 #include "experiments/report/cell_plan.h"
 #include "experiments/report/page.h"
 #include "experiments/report/report_pictures.h"
@@ -16,10 +16,6 @@ namespace ulam {
 namespace {
 
 namespace fs = std::filesystem;
-
-Json readJson(const fs::path& path) {
-    return JsonDocument::fromFile(path).json();
-}
 
 /// JSON that cannot end the element it stands in.
 std::string scriptSafe(const Json& json) {
@@ -68,8 +64,8 @@ std::string makePage(const fs::path& runDir, const Json& summary) {
     Json results = Json::object();
     for (const Json& cell : cells) {
         const std::string name = cell.at("cell").get<std::string>();
-        const fs::path result = runDir / "cells" / name / "r000" / "result.json";
-        if (fs::exists(result)) results[name] = readJson(result);
+        const Json result = readJsonIfThere(runDir / "cells" / name / "r000" / "result.json");
+        if (!result.is_null()) results[name] = result;
     }
     const Json data = {{"summary", summary},
                        {"experiment", readJsonIfThere(runDir / "experiment.json")},
@@ -100,8 +96,12 @@ std::string reportPage(const fs::path& runDir, const Json& summary) {
     }
 }
 
+void writeReport(const fs::path& runDir, const Json& summary) {
+    writeFileAtomically(runDir / "report.html", reportPage(runDir, summary));
+}
+
 void writeReport(const fs::path& runDir) {
-    writeFileAtomically(runDir / "report.html", reportPage(runDir, readJson(runDir / "summary.json")));
+    writeReport(runDir, readOwnJson(runDir / "summary.json"));
 }
 
 }  // namespace ulam

@@ -17,6 +17,8 @@ namespace ulam {
 /// summary.json, InvalidConfig where a file is damaged or the images of a cell differ in size, CannotWrite where
 /// report.html cannot be written.
 void writeReport(const std::filesystem::path& runDir);
+/// The same where the summary has just been made.
+void writeReport(const std::filesystem::path& runDir, const Json& summary);
 
 /// The same page as text, of another summary than that of the folder. Errors as above.
 std::string reportPage(const std::filesystem::path& runDir, const Json& summary);

@@ -4,6 +4,7 @@
 import json
 import os
 import pathlib
+import platform
 import signal
 import socket
 import struct
@@ -127,6 +128,7 @@ class Usage(CliTest):
         self.render("--set", "samplermax_depth", expect=2)
         self.render("--set", "camera.fov=3", expect=2)
         self.ulam("list", "smaplers", expect=2)
+        self.assertIn("--tev", self.ulam("run", "tiny.json", "--jobs", "slurm", "--tev", "localhost:14158", expect=2).stderr)
         self.ulam("render", "scene.json", "--sampler", "path", "--spp", 1, "-o", "out.png", expect=2)
         self.ulam("scene", "scene.json", expect=2)
         self.ulam("scene", "scene.json", "--info", "--export", "mitsuba3", "out", expect=2)
@@ -291,12 +293,14 @@ class Run(CliTest):
         self.assertRegex(lines[0], r"^wall: bdpt has [\d.e-]+ times the relMSE of path .*undecided$")
         report = pathlib.Path(lines[1])
         self.assertEqual(report, (self.folder / "runs/tiny-1/report.html").resolve())
-        for name in ("experiment.json", "resolved.json", "provenance.json", "summary.json", "summary.csv", "summary.md",
+        for name in ("experiment.json", "resolved.json", "provenance.json", "summary.json", "summary.csv", "comparisons.csv", "summary.md",
                      "summary.tex", "report.html", "cells/wall-path/r002/image.exr", "cells/wall-path/r002/result.json"):
             self.assertTrue((report.parent / name).exists(), name)
         self.assertIn("too few replicates for a verdict", done.stderr)
         provenance = json.loads((report.parent / "provenance.json").read_text())
         self.assertIn("run", provenance["arguments"])
+        if pathlib.Path("/etc/os-release").exists():
+            self.assertEqual(provenance["machine"]["distribution"], platform.freedesktop_os_release()["PRETTY_NAME"])
 
         # A second run is another folder, and its reference comes from the cache.
         again = self.ulam("run", "tiny.json", "--json", "--quiet")

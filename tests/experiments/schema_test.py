@@ -36,10 +36,10 @@ BASE = {
     "budget": {"time": 0.03},
     "reference": {"sampler": "mlt", "budget": {"time": 0.5}},
 }
-VALUES = [0, 1, -1, 2, 0.5, 1e9, 1e30, "x", "", True, None, [], {}, [1], [0, 1, 2], {"type": "x"}, ["relmse"]]
+VALUES = [0, 1, -1, 2, 0.5, 1e9, 1e30, "x", "", True, None, [], {}, [1], [0, 1, 2], {"type": "x"}, ["relmse"], ["psnr"], ["psnr", "relmse"], ["relmse", "psnr"]]
 # What a schema cannot know: names that stand elsewhere in the file, which files there are, what a sweep's values are for.
 BEYOND_SCHEMAS = ("unknown sampler of this experiment", "has no chains", "cannot read", "does not exist", "unknown scene",
-                  "at least the", "intervals need", "needs a scene with features", "no parameter of a sampler", "two candidates", " at sweep ", " twice ", "no point of the sweep", "(/reference/sampler); Known")
+                  "the crop reaches beyond", "at least the", "intervals need", "needs a scene with features", "no parameter of a sampler", "two candidates", " at sweep ", " at tune.sweep ", " twice ", "no point of the sweep", "(/reference/sampler); Known")
 
 
 def changed(document, path, value):
@@ -68,6 +68,14 @@ def experiments(schema):
         places += [(("budget", name), s), (("reference", "budget", name), s)]
     places += [(("tune", name), s) for name, s in schema["properties"]["tune"]["properties"].items()]
     places += [(("until", name), s) for name, s in schema["properties"]["until"]["properties"].items()]
+    film = schema["properties"]["film"]["properties"]
+    places += [(("film", name), s) for name, s in film.items()]
+    for filter in film["rfilter"]["anyOf"]:
+        kind = filter["properties"]["type"]
+        for name in [kind["const"]] if "const" in kind else kind["enum"]:
+            places.append((("film", "rfilter"), {"enum": [{"type": name}]}))
+        places += [(("film", "rfilter"), {"enum": [{"type": kind["const"], name: value} for value in candidates(s)]})
+                   for name, s in filter["properties"].items() if name != "type"]
     for form in definitions["reference"]["anyOf"][1:]:
         places += [(("reference", name), s) for name, s in form["properties"].items()]
     cases = [("nothing", BASE)]
@@ -85,7 +93,7 @@ def experiments(schema):
                         cases.append((f"{name}.{mutation}", changed(document, ("samplers", "mlt", key), {mutation: entry})))
     for key in BASE:
         cases.append((f"without {key}", {name: value for name, value in BASE.items() if name != key}))
-    for path in (("filmm",), ("budget", "tim"), ("samplers", "mlt", "chain"), ("samplers", "a b"), ("reference", "sample"), ("scenes", "a")):
+    for path in (("filmm",), ("film", "widht"), ("film", "pixel_format"), ("film", "rfilter", "type"), ("budget", "tim"), ("samplers", "mlt", "chain"), ("samplers", "a b"), ("reference", "sample"), ("scenes", "a")):
         cases += [(".".join(path), changed(BASE, path, value)) for value in (1, {"type": "path"}, {"type": "cornell_box"})]
     ranges = [[2, 3], [], 3, "2"]
     for scale in ("linear", "log", "lin"):

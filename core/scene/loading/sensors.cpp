@@ -86,9 +86,7 @@ const PluginTable<ReconstructionFilter(const JsonNode&)>& filterTable() {
 }
 
 ReconstructionFilter readFilter(const JsonNode& node, LoadContext& context) {
-    // Samples are drawn from the filter here, so it cannot be negative anywhere.
-    static constexpr std::array kNegative{"catmullrom", "lanczos", "mitchell"};
-    if (std::find(kNegative.begin(), kNegative.end(), pluginName(node)) == kNegative.end()) return filterTable().find(node).read(node);
+    if (std::ranges::find(replacedFilters(), pluginName(node)) == replacedFilters().end()) return filterTable().find(node).read(node);
     context.warnings.push_back(fmt::format("a gaussian takes the place of the reconstruction filter {}, which is negative in parts, at {}",
                                            inQuotes(pluginName(node)), node.where()));
     return ReconstructionFilter(ReconstructionFilter::GaussianParameters{});
@@ -137,6 +135,12 @@ std::vector<PluginInfo> filmPlugins() {
 }
 std::vector<PluginInfo> filterPlugins() {
     return filterTable().infos();
+}
+
+const std::vector<std::string>& replacedFilters() {
+    // Samples are drawn from the filter here, so it cannot be negative anywhere.
+    static const std::vector<std::string> negative{"catmullrom", "lanczos", "mitchell"};
+    return negative;
 }
 
 bool noteIfUnused(const JsonNode& node, LoadContext& context) {

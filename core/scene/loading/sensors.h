@@ -11,6 +11,8 @@ namespace ulam {
 std::vector<PluginInfo> sensorPlugins();
 std::vector<PluginInfo> filmPlugins();
 std::vector<PluginInfo> filterPlugins();
+/// Filters of Mitsuba in whose place a gaussian is taken, with a warning.
+const std::vector<std::string>& replacedFilters();
 
 /// Integrators and samplers stand in Mitsuba's scenes, but not in Ulam's: they are only noted. Returns whether it is
 /// one.

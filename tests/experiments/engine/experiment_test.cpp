@@ -38,6 +38,9 @@ TEST_CASE("misspelt keys name the nearest one", "[experiment]") {
     CHECK(mentions(refusal("samplers.path.type", "bdtp"), "bdpt"));
     CHECK(mentions(refusal("baseline", "pth"), "path"));
     CHECK(mentions(refusal("metrics", {"relmsee"}), "relmse"));
+    CHECK(mentions(refusal("film.widht", 8), "did you mean \"width\"?"));
+    CHECK(mentions(refusal("film.type", "hdrfil"), "hdrfilm"));
+    CHECK(mentions(refusal("film.pixel_format", "rgb"), "film option"));
     CHECK(mentions(refusal("reference.replicate", 4), "replicates"));
     CHECK(mentions(refusal("reference.sampler", "bdtp"), "bdpt"));
     CHECK(mentions(refusal("scenes.wall.wall.type", "rectangl"), "rectangle"));

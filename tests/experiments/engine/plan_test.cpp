@@ -43,6 +43,55 @@ TEST_CASE("cells are scenes × samplers × what the sweep changes", "[plan]") {
     CHECK(plan.references.size() == 3);
 }
 
+TEST_CASE("a sweep leads into the files of scenes", "[plan]") {
+    const Folder folder;
+    std::filesystem::create_directories(folder / "below");
+    Json scene = tinyScene();
+    scene["mesh"] = {{"type", "obj"}, {"filename", "mesh.obj"}};  // beside the scene
+    writeFileAtomically(folder / "below/mesh.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    writeFileAtomically(folder / "below/scene.json", scene.dump());
+    Json experiment = tinyExperiment();
+    experiment["scenes"]["wall"] = "below/scene.json";
+    const std::string unchanged = planOf(folder, experiment).cells[0].task.scene->scene.hash;
+    for (const Json& sweep : {Json{{"scenes.wall.lamp.emitter.radiance", {4, 8}}}, Json{{"zip", {{"scenes.wall.lamp.emitter.radiance", {4, 8}}}}}}) {
+        experiment["sweep"] = sweep;
+        const Plan plan = planOf(folder, experiment);
+        REQUIRE(plan.cells.size() == 4);
+        CHECK(plan.cells[0].task.scene->scene.hash == unchanged);
+        CHECK(plan.cells[2].task.scene->scene.hash != unchanged);
+        CHECK(plan.experiment["scenes"]["wall"] == "below/scene.json");
+    }
+    experiment["sweep"] = {{"scenes.wall.lamp.emitter.radianc", {4}}};
+    CHECK(mentions(errorOf([&] { planOf(folder, experiment); }).message, "did you mean \"radiance\"?"));
+}
+
+TEST_CASE("names of cells are short enough for file systems", "[plan]") {
+    const Folder folder;
+    const auto names = [&](int mutations) {
+        Json experiment = tinyExperiment();
+        Json mix = Json::object(), zip = Json::object();
+        for (int m = 0; m < mutations; ++m) {
+            const std::string name = fmt::format("large_step_{}", m);
+            mix[name] = {{"type", "large_step"}};
+            zip["samplers.p.mutations." + name + ".weight"] = {0.123456 + m, 0.234567 + m};
+        }
+        experiment["samplers"] = {{"p", {{"type", "pssmlt"}, {"mutations", mix}}}};
+        experiment.erase("baseline");
+        experiment["sweep"] = {{"zip", zip}};
+        return cellNames(planOf(folder, experiment));
+    };
+    CHECK(names(2).contains("wall-p,samplers.p.mutations.large_step_0.weight=0.123456,samplers.p.mutations.large_step_1.weight=1.12346"));
+    CHECK(names(5).contains("wall-p,large_step_0.weight=0.123456,large_step_1.weight=1.12346,large_step_2.weight=2.12346,"
+                            "large_step_3.weight=3.12346,large_step_4.weight=4.12346"));
+    const auto hashed = names(12);
+    REQUIRE(hashed.size() == 2);
+    for (const std::string& name : hashed) {
+        CHECK(name.size() <= 200);
+        CHECK(mentions(name, "large_step_4.weight="));
+        CHECK(mentions(name, ",hash="));
+    }
+}
+
 TEST_CASE("random numbers depend on seed, cell and replicate and on nothing else", "[plan]") {
     const Folder folder;
     const auto keys = [&](const Json& experiment) {

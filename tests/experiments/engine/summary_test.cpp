@@ -257,8 +257,37 @@ TEST_CASE("tables have a row for each cell", "[summary]") {
     CHECK(mentions(summaryLatex(summary), "\\toprule"));
     CHECK(mentions(summaryLatex(summary), "bdpt, rr\\_depth 4"));
     writeSummary(folder / "run", summary);
-    for (const char* file : {"summary.json", "summary.csv", "summary.md", "summary.tex"})
+    for (const char* file : {"summary.json", "summary.csv", "comparisons.csv", "summary.md", "summary.tex"})
         CHECK(fs::exists(folder / "run" / file));
+}
+
+TEST_CASE("tables of numbers have the swept values and the comparisons", "[summary]") {
+    const Folder folder;
+    Json experiment = tinyExperiment();
+    experiment["sweep"] = {{"samplers.bdpt.rr_depth", {3, 4}}, {"film.rfilter", {{{"type", "box"}}, {{"type", "tent"}, {"radius", 1.5}}}}};
+    Json summary = summaryOf(folder, experiment);
+    const std::string csv = summaryCsv(summary);
+    CHECK(mentions(csv, ",normalization_cv,sweep.film.rfilter,sweep.samplers.bdpt.rr_depth\n"));
+    CHECK(mentions(csv, ",\"{\"\"type\"\":\"\"tent\"\",\"\"radius\"\":1.5}\",\n"));  // of path, which has no rr_depth
+    CHECK(mentions(csv, ",\"{\"\"type\"\":\"\"box\"\"}\",4\n"));
+
+    Json& comparison = summary["comparisons"][1];
+    comparison.update(Json{{"ratio", 0.5}, {"ci95", {0.25, 0.75}}, {"speedup", 2}, {"speedup_ci95", {1.5, nullptr}}, {"p", 0.125}, {"p_adjusted", 0.25}, {"detectable_ratio", nullptr}});
+    const std::string comparisons = comparisonsCsv(summary);
+    CHECK(std::count(comparisons.begin(), comparisons.end(), '\n') == 1 + 4);
+    CHECK(mentions(comparisons, "wall,bdpt,path,relmse,0.5,0.25,0.75,2,1.5,,0.125,0.25,undecided,,false,false,"));
+    CHECK(mentions(comparisons, ",heavy_tailed,sweep.film.rfilter,sweep.samplers.bdpt.rr_depth\n"));
+}
+
+TEST_CASE("LaTeX gets swept values by names that tell them apart, and no commands", "[summary]") {
+    const Folder folder;
+    Json summary = summaryOf(folder, tinyExperiment());
+    Json& cell = summary["cells"][1];
+    cell["sweep"] = {{"samplers.m.mutations.lens.weight", 0.125}, {"samplers.m.mutations.large_step.weight", 0.25}, {"film.width", 8}};
+    cell["scene"] = "a\\b^c~d_e%{f}";
+    const std::string tex = summaryLatex(summary);
+    CHECK(mentions(tex, ", lens.weight 0.125, large\\_step.weight 0.25, width 8 &"));
+    CHECK(mentions(tex, "a\\textbackslash{}b\\textasciicircum{}c\\textasciitilde{}d\\_e\\%\\{f\\} &"));
 }
 
 TEST_CASE("LaTeX gets powers of ten and infinity", "[summary]") {

@@ -148,10 +148,18 @@ TEST_CASE("labels are fit for folders and differ", "[sweep]") {
     // Two keys with the same last step are told apart by the whole path.
     const auto twins = expand({{"samplers.path.rr_depth", {3}}, {"samplers.bdpt.rr_depth", {3}}});
     CHECK(twins[0][0].label == "samplers.path.rr_depth=3");
+    CHECK(twins[0][0].shortLabel == "path.rr_depth=3");
     // A column of a zip may repeat a value, which keeps its label.
     const auto zipped = expand({{"zip", {{"max_depth", {2, 2, 3}}, {"budget.spp", {8, 16, 16}}}}});
     CHECK(zipped[0][0].label == "max_depth=2");
     CHECK(zipped[1][0].label == "max_depth=2");
+}
+
+TEST_CASE("short names are the last steps that tell a path from others", "[sweep]") {
+    const std::vector<std::string> paths{"samplers.a.mutations.lens.weight", "samplers.b.mutations.lens.weight", "samplers.a.chains", "weight"};
+    CHECK(shortName(paths[0], paths) == "a.mutations.lens.weight");
+    CHECK(shortName(paths[2], paths) == "chains");
+    CHECK(shortName(paths[3], paths) == "weight");  // all of it, though others end so
 }
 
 TEST_CASE("keys of the whole run cannot be swept", "[sweep]") {
@@ -201,8 +209,8 @@ TEST_CASE("what is no sweep is refused", "[sweep]") {
 }
 
 TEST_CASE("keys of other scenes and samplers do not touch a cell", "[sweep]") {
-    const SweepValue sampler{"samplers.mlt.chains", 1, ""}, scene{"scenes.hidden.holes", 1, ""},
-        all{"max_depth", 1, ""};
+    const SweepValue sampler{"samplers.mlt.chains", 1, "", ""}, scene{"scenes.hidden.holes", 1, "", ""},
+        all{"max_depth", 1, "", ""};
     CHECK(affects(sampler, "hidden", "mlt"));
     CHECK_FALSE(affects(sampler, "hidden", "bdpt"));
     CHECK(affects(scene, "hidden", "bdpt"));

@@ -92,6 +92,10 @@ TEST_CASE("what cannot be tuned is refused", "[tuning]") {
     CHECK(mentions(tuningRefusal("tune.sweep", {{"budget.spp", {1, 2}}}), "no parameter of a sampler"));
     CHECK(mentions(tuningRefusal("tune.sweep", {{"samplers.mlt.chains", {1}}}), "two candidates"));
     CHECK(mentions(tuningRefusal("tune.sweep", {{"samplers.mtl.chains", {1, 2}}}), "mlt"));
+    const std::string misspelt = tuningRefusal("tune.sweep", {{"samplers.mlt.chians", {1, 2}}});
+    CHECK(mentions(misspelt, "chains"));
+    CHECK(mentions(misspelt, "tune.sweep samplers.mlt.chians=1"));
+    CHECK(mentions(tuningRefusal("tune.sweep", {{"samplers.mlt.chains", {1, 0}}}), "tune.sweep samplers.mlt.chains=0"));
     CHECK(mentions(tuningRefusal("tune.reduction", 1), "reduction"));
     CHECK(mentions(tuningRefusal("samplers.mlt_untuned", {{"type", "path"}}), "before tuning"));
     JsonDocument two = documentOf(tunedExperiment());

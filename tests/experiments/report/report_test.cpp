@@ -2,6 +2,7 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <set>
 #include <string>
 
@@ -146,13 +147,17 @@ TEST_CASE("images of techniques are read by their names, in pairs and small") {
 
 namespace {
 
-/// The page of one cell with one replicate.
-std::string pageOf(const Image& image) {
+/// The page of cells with one replicate each.
+std::string pageOf(const std::vector<Image>& images) {
     RunFolder folder;
-    fs::create_directories(folder.path / "cells/a/r000");
-    writeExr((folder.path / "cells/a/r000/image.exr").string(), image);
-    writeFileAtomically(folder.path / "summary.json", R"({"cells": [{"cell": "a", "scene": "s", "sampler": "x"}]})");
-    writeReport(folder.path);
+    Json cells = Json::array();
+    for (const Image& image : images) {
+        const std::string cell = "c" + std::to_string(cells.size());
+        fs::create_directories(folder.path / "cells" / cell / "r000");
+        writeExr((folder.path / "cells" / cell / "r000/image.exr").string(), image);
+        cells.push_back({{"cell", cell}, {"scene", "s"}, {"sampler", "x"}});
+    }
+    writeReport(folder.path, {{"cells", cells}});
     return readFile(folder.path / "report.html");
 }
 
@@ -217,21 +222,34 @@ TEST_CASE("a JPEG picture at its edges") {
 }
 
 TEST_CASE("images too large for one page become JPEG, and shrink where that is not enough") {
-    const std::string exact = pageOf(Image(700, 600, Rgb(1)));
+    const std::string exact = pageOf({Image(700, 600, Rgb(1))});
     CHECK(exact.find(R"("shrink":1,"exact":true)") != exact.npos);
-    const std::string jpeg = pageOf(Image(1500, 1200, Rgb(1)));
+    const std::string jpeg = pageOf({Image(1500, 1200, Rgb(1))});
     CHECK(jpeg.find(R"("width":1500,"height":1200,"toe":)") != jpeg.npos);
     CHECK(jpeg.find(R"("shrink":1,"exact":false)") != jpeg.npos);
     std::mt19937 random(5);
     Image noise(3200, 2000);
     for (Rgb& pixel : noise.pixels)
         for (int c = 0; c < 3; ++c) pixel[c] = std::ldexp(1.0f, int(random() % 8));
-    const std::string small = pageOf(noise);
+    const std::string small = pageOf({noise});
     CHECK(small.find(R"("width":1600,"height":1000,"toe":)") != small.npos);
     CHECK(small.find(R"("shrink":2,"exact":false)") != small.npos);
     CHECK(double(small.size()) < kReportImageBytes);
     CHECK(double(small.size()) >
           kReportImageBytes / 8);  // of the room no more is left than a factor of 2 and maps explain
+}
+
+TEST_CASE("cells may have films of their own") {
+    const std::string page = pageOf({Image(8, 8, Rgb(1)), Image(1500, 1200, Rgb(1))});
+    CHECK(page.find(R"("width":1500,"height":1200,"toe":)") != page.npos);
+    CHECK(double(page.size()) < kReportImageBytes);
+}
+
+TEST_CASE("a summary may be larger than what is read of users") {
+    RunFolder folder;
+    std::ofstream(folder.path / "summary.json") << R"({"cells": []})" << std::string(kMaxJsonBytes, ' ');
+    writeReport(folder.path);
+    CHECK(fs::exists(folder.path / "report.html"));
 }
 
 TEST_CASE("a report needs a summary and nothing else") {
