@@ -68,8 +68,11 @@ std::string makePage(const fs::path& runDir, const Json& summary) {
     Json results = Json::object();
     for (const Json& cell : cells) {
         const std::string name = cell.at("cell").get<std::string>();
-        const fs::path result = runDir / "cells" / name / "r000" / "result.json";
-        if (fs::exists(result)) results[name] = readJson(result);
+        for (const auto& [replicate, folder] : replicateFolders(runDir / "cells" / name)) {
+            if (!fs::exists(folder / "result.json")) continue;
+            results[name] = readJson(folder / "result.json");
+            break;
+        }
     }
     const Json data = {{"summary", summary},
                        {"experiment", readJsonIfThere(runDir / "experiment.json")},
