@@ -58,6 +58,8 @@ public:
         json = {{"cell", cell_.task.name}, {"scene", cell_.task.scene->name},     {"sampler", cell_.task.sampler},
                 {"sweep", cell_.sweep},    {"parameters", cell_.task.parameters}, {"replicates", replicates_.size()}};
         if (replicates_.empty()) return summary_;
+        json["replicate_numbers"] = Json::array();
+        for (const Replicate& r : replicates_) json["replicate_numbers"].push_back(r.number);
         addMetrics();
         addDecomposition();
         for (const char* field : {"rays", "mutations", "samples", "setup_seconds", "seeding_seconds", "cpu_seconds"})
@@ -247,12 +249,14 @@ private:
         const Features& features = cell_.task.scene->scene.features;
         Json all = Json::object();
         std::vector<std::vector<double>> shares;
+        std::vector<bool> dark;  // replicates without light in any feature have no shares
         for (const Replicate& r : replicates_) {
             std::vector<double> energy;
             for (const std::string& name : features.names)
                 energy.push_back(r.result.at("feature_energy").value(name, 0.0));
             const double total = std::accumulate(energy.begin(), energy.end(), 0.0);
-            if (!(total > 0)) continue;
+            dark.push_back(!(total > 0));
+            if (dark.back()) continue;
             for (double& e : energy) e /= total;
             shares.push_back(std::move(energy));
         }
@@ -263,6 +267,9 @@ private:
         for (std::size_t f = 0; f < found.size(); ++f) {
             std::vector<double> column;
             for (const auto& replicate : shares) column.push_back(replicate[f]);
+            Json perReplicate = Json::array();
+            for (std::size_t r = 0, lit = 0; r < dark.size(); ++r)
+                perReplicate.push_back(dark[r] ? Json() : Json(column[lit++]));
             all[features.names[f]] = {{"share", found[f].share},
                                       {"share_ci95", intervalOrNull(found[f].ci95)},
                                       {"truth", found[f].truth ? Json(*found[f].truth) : Json()},
@@ -270,7 +277,7 @@ private:
                                       {"p_adjusted", found[f].judged ? Json(found[f].pAdjusted) : Json()},
                                       {"relative_sd", numberOrNull(statistics::coefficientOfVariation(column))},
                                       {"jumps_per_million", mutations > 0 ? Json(1e6 * jumps / mutations) : Json()},
-                                      {"per_replicate", column}};
+                                      {"per_replicate", perReplicate}};
             if (found[f].truth && !found[f].judged) ++unjudgedFeatures_;
             if (found[f].judged && found[f].pAdjusted < statistics::kFamilyLevel) ++wrongFeatures_;
         }

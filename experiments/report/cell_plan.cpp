@@ -12,28 +12,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The folders of a cell's replicates that left an image, by number.
-std::map<std::size_t, fs::path> replicateFolders(const fs::path& cellFolder) {
-    std::map<std::size_t, fs::path> folders;
-    if (!fs::exists(cellFolder)) return folders;
-    for (const fs::directory_entry& entry : fs::directory_iterator(cellFolder)) {
-        const std::string name = entry.path().filename().string();
-        std::size_t replicate = 0;
-        const char* const end = name.data() + name.size();
-        const bool numbered = name.starts_with('r') && std::from_chars(name.data() + 1, end, replicate).ptr == end;
-        if (numbered && fs::exists(entry.path() / "image.exr")) folders.emplace(replicate, entry.path());
-    }
-    return folders;
-}
-
 /// The replicate the summary names, or else the one of this rank (0 … 1) in the primary metric, or else the first.
 std::size_t chooseReplicate(const Json& cell, const char* name, double rank, const std::string& metric) {
     if (const auto named = cell.find(name); named != cell.end() && named->is_number_unsigned())
         return named->get<std::size_t>();
     const Json values = cell.value(Json::json_pointer("/metrics/" + metric + "/values"), Json::array());
+    const Json numbers = cell.value("replicate_numbers", Json::array());
     std::vector<std::pair<double, std::size_t>> sorted;
-    for (std::size_t r = 0; r < values.size(); ++r)
-        if (values[r].is_number()) sorted.emplace_back(values[r].get<double>(), r);
+    for (std::size_t i = 0; i < values.size(); ++i)
+        if (values[i].is_number())
+            sorted.emplace_back(values[i].get<double>(), i < numbers.size() ? numbers[i].get<std::size_t>() : i);
     if (sorted.empty()) return 0;
     std::sort(sorted.begin(), sorted.end());
     return sorted[static_cast<std::size_t>(rank * double(sorted.size() - 1))].second;
@@ -60,6 +48,19 @@ std::vector<std::pair<int, int>> techniquesIn(const fs::path& replicate) {
 
 Json readJsonIfThere(const fs::path& path) {
     return fs::exists(path) ? readOwnJson(path) : Json();
+}
+
+std::map<std::size_t, fs::path> replicateFolders(const fs::path& cellFolder) {
+    std::map<std::size_t, fs::path> folders;
+    if (!fs::exists(cellFolder)) return folders;
+    for (const fs::directory_entry& entry : fs::directory_iterator(cellFolder)) {
+        const std::string name = entry.path().filename().string();
+        std::size_t replicate = 0;
+        const char* const end = name.data() + name.size();
+        const bool numbered = name.starts_with('r') && std::from_chars(name.data() + 1, end, replicate).ptr == end;
+        if (numbered && fs::exists(entry.path() / "image.exr")) folders.emplace(replicate, entry.path());
+    }
+    return folders;
 }
 
 fs::path techniqueFile(const fs::path& replicate, std::pair<int, int> technique, std::string_view kind) {

@@ -31,6 +31,9 @@ struct CellPlan {
 /// Null where there is no such file.
 Json readJsonIfThere(const std::filesystem::path& path);
 
+/// The folders of a cell's replicates that left an image, by number.
+std::map<std::size_t, std::filesystem::path> replicateFolders(const std::filesystem::path& cellFolder);
+
 /// Of a cell of summary.json, whose primary metric tells which replicates are the median and the worst where it does
 /// not say.
 CellPlan planCell(const std::filesystem::path& runDir, const Json& cell, const std::string& metric);

@@ -64,8 +64,12 @@ std::string makePage(const fs::path& runDir, const Json& summary) {
     Json results = Json::object();
     for (const Json& cell : cells) {
         const std::string name = cell.at("cell").get<std::string>();
-        const Json result = readJsonIfThere(runDir / "cells" / name / "r000" / "result.json");
-        if (!result.is_null()) results[name] = result;
+        for (const auto& [replicate, folder] : replicateFolders(runDir / "cells" / name)) {
+            const Json result = readJsonIfThere(folder / "result.json");
+            if (result.is_null()) continue;
+            results[name] = result;
+            break;
+        }
     }
     const Json data = {{"summary", summary},
                        {"experiment", readJsonIfThere(runDir / "experiment.json")},

@@ -332,6 +332,9 @@ class Display(unittest.TestCase):
     def test_a_run_shows_its_report_in_a_frame(self):
         shown = run._repr_html_()
         page = re.fullmatch(r'<iframe sandbox="allow-scripts[^"]*" srcdoc="([^"]*)"[^>]*></iframe>', shown)[1]
+        # Its buttons save files and print; the notebook stays out of its reach.
+        sandbox = re.search(r'sandbox="([^"]*)"', shown)[1].split()
+        self.assertEqual(set(sandbox), {"allow-scripts", "allow-downloads", "allow-modals"})
         self.assertEqual(html.unescape(page), (folder / "report.html").read_text(encoding="utf8"))
         copy = copy_of_run(self)
         (copy / "report.html").unlink()

@@ -117,7 +117,7 @@ class Cell:
     def replicate_rows(self, summary: tables.Object) -> list[tables.Row]:
         rows = [{"cell": self.name} | tables.result_row(replicate.result) for replicate in self.finished()]
         for name, metric in summary["metrics"].items():
-            # The summary has a number for each replicate it found: with others since, it does not say whose they are.
+            # The summary has a number for each replicate it found: with others since, it is not that of these rows.
             values = metric["values"] if len(metric["values"]) == len(rows) else [None] * len(rows)
             for row, value in zip(rows, values, strict=True):
                 row[name] = value

@@ -17,14 +17,14 @@ PICTURE_WIDTH = 256  # CSS pixels
 
 
 def run_html(run: "Run") -> str:
-    """The run's report in a frame of its own, where its scripts see nothing of the notebook."""
+    """The run's report in a frame of its own, where its scripts see nothing of the notebook, but may save files and print."""
     report = run.folder / "report.html"
     if not report.exists():
         hint = f"<p>There is no {html.escape(str(report))}: <code>ulam report</code> makes it.</p>"
         return run.cells.to_html(max_rows=20) + hint
     page = html.escape(report.read_text(encoding="utf8"))
     return (
-        f'<iframe sandbox="allow-scripts allow-downloads" srcdoc="{page}" title="{html.escape(run.name)}" '
+        f'<iframe sandbox="allow-scripts allow-downloads allow-modals" srcdoc="{page}" title="{html.escape(run.name)}" '
         f'style="width: 100%; height: {REPORT_HEIGHT}px; border: 0"></iframe>'
     )
 

@@ -1,11 +1,11 @@
 // A chain caught in one hole: the worst run's picture beside the reference, and the hole map of that very run.
 
 /// The map of one run as a tiny canvas, a pixel per hole.
-function miniMap(grid, replicate, colour) {
+function miniMap(grid, index, colour) {
     const canvas = el("canvas", { width: grid.columns, height: grid.rows, "aria-hidden": true });
     const context = canvas.getContext("2d");
     for (const hole of grid.holes) {
-        const rgb = colour(hole.ratios[replicate]);
+        const rgb = colour(hole.ratios[index]);
         if (!rgb) continue;
         context.fillStyle = rgbToCss(rgb);
         context.fillRect(hole.column, hole.row, 1, 1);
@@ -15,18 +15,18 @@ function miniMap(grid, replicate, colour) {
 
 const largestHoleError = (cell) => Math.max(...cell.holeErrors.filter(isNumber));
 
-function caughtSentence(cell, replicate) {
-    const holes = cell.grid.holes.filter((hole) => isNumber(hole.ratios[replicate]));
-    const brightest = holes.reduce((a, b) => (b.ratios[replicate] > a.ratios[replicate] ? b : a));
-    const starved = holes.filter((hole) => hole.ratios[replicate] < 0.5).length,
-        empty = holes.filter((hole) => hole.ratios[replicate] === 0).length;
+function caughtSentence(cell, index) {
+    const holes = cell.grid.holes.filter((hole) => isNumber(hole.ratios[index]));
+    const brightest = holes.reduce((a, b) => (b.ratios[index] > a.ratios[index] ? b : a));
+    const starved = holes.filter((hole) => hole.ratios[index] < 0.5).length,
+        empty = holes.filter((hole) => hole.ratios[index] === 0).length;
     return [
-        `In run ${replicate} of ${cell.label}, the hole in row ${brightest.row + 1}, column ${brightest.column + 1} got `,
-        el("b", {}, `${number(brightest.ratios[replicate])} ×`),
+        `In run ${replicateNumber(cell, index)} of ${cell.label}, the hole in row ${brightest.row + 1}, column ${brightest.column + 1} got `,
+        el("b", {}, `${number(brightest.ratios[index])} ×`),
         " its true share; ",
         el("b", {}, `${starved || "none"} of ${holes.length}`),
         ` holes got less than half of theirs${empty ? `, ${empty} nothing at all` : ""}. `,
-        `A hole’s brightness is off by ${percent(cell.holeErrors[replicate])} (RMS).`,
+        `A hole’s brightness is off by ${percent(cell.holeErrors[index])} (RMS).`,
     ];
 }
 
@@ -46,28 +46,31 @@ function caughtPanel(cell) {
     const { grid } = cell,
         ids = pictureIds(cell);
     const worst =
-        [ids.worst_replicate, cell.worst_replicate].find((r) => isNumber(cell.holeErrors[r])) ??
-        cell.holeErrors.indexOf(largestHoleError(cell));
+        [ids.worst_replicate, cell.worst_replicate]
+            .map((number) => replicateIndex(cell, number))
+            .find((index) => isNumber(cell.holeErrors[index])) ?? cell.holeErrors.indexOf(largestHoleError(cell));
+    const run = replicateNumber(cell, worst),
+        image = run === ids.worst_replicate ? ids.worst : null;
     const limit = ratioLimit(grid.holes.flatMap((hole) => hole.ratios)),
         colour = ratioColour(limit);
     const describe = (hole) => [
         holeTitle(hole),
-        line(`${number(hole.ratios[worst])} × its true share in run ${worst}`),
+        line(`${number(hole.ratios[worst])} × its true share in run ${run}`),
         line(`mean over runs ${number(hole.ratio)} ×`),
     ];
     const reference = picture(ids.reference),
         exposure = reference ? fittingExposure(reference) : 0;
-    const name = `run ${worst} of ${cell.label}, ${cell.group.title}`;
+    const name = `run ${run} of ${cell.label}, ${cell.group.title}`;
     const holes = () =>
         holeMap(grid, {
-            name: `run ${worst} of ${cell.label}`,
+            name: `run ${run} of ${cell.label}`,
             colour: (hole) => colour(hole.ratios[worst]),
             describe,
         });
     const strip = () => {
         const pictures = [
             ["reference", picture(ids.reference)],
-            [`${cell.label}, run ${worst}`, picture(ids.worst)],
+            [`${cell.label}, run ${run}`, picture(image)],
         ].filter(([, image]) => image);
         const parts = pictures.map(([label, image]) => ({
             label,
@@ -88,8 +91,8 @@ function caughtPanel(cell) {
             { class: "caught-figures" },
             caughtFigure("reference", still(ids.reference, exposure, "reference")),
             caughtFigure(
-                `${cell.label}, run ${worst} (the worst)`,
-                still(ids.worst, exposure, `${cell.label}, run ${worst}`),
+                `${cell.label}, run ${run} (the worst)`,
+                still(image, exposure, `${cell.label}, run ${run}`),
             ),
             caughtFigure("its holes: share over true share", holes()),
             el(
@@ -105,7 +108,7 @@ function caughtPanel(cell) {
                             "figure",
                             { class: r === worst ? "worst" : null },
                             miniMap(grid, r, colour),
-                            el("figcaption", {}, `${r}: ${percent(error)}`),
+                            el("figcaption", {}, `${replicateNumber(cell, r)}: ${percent(error)}`),
                         ),
                     ),
                 ),

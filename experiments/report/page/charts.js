@@ -108,7 +108,7 @@ function convergenceSection() {
     return section(
         "convergence",
         "Error against cost",
-        "Snapshots inside each run, mean over runs, band: 95 % interval. The slope is fitted to log error against log cost.",
+        `Snapshots inside each run, mean over runs, band: ${kIntervalName}. The slope is fitted to log error against log cost.`,
         drawn.map((group) =>
             el(
                 "div",

@@ -20,7 +20,8 @@ function subtitle() {
         .join(" · ");
 }
 
-function render() {
+/// Calls `whenDone` when all is made.
+function render(whenDone = () => {}) {
     waiting.length = 0;
     const name = summary.name ?? data.experiment?.name ?? "run";
     const sections = [
@@ -53,9 +54,20 @@ function render() {
             el("nav", { "aria-label": "sections" }, links),
             el("main", { "aria-busy": "true" }, ...[alarmBox()].filter(Boolean), ...sections),
         );
-    const done = () => document.querySelector("main").removeAttribute("aria-busy");
+    const done = () => {
+        document.querySelector("main").removeAttribute("aria-busy");
+        whenDone();
+    };
     setTimeout(() => decodeJpegs().then(() => makeWaiting(done)));
 }
 
 render();
-matchMedia("(prefers-color-scheme: dark)").addEventListener("change", render);
+
+let carried = null; // until the page is whole, when the colours change once more before it is
+matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
+    carried ??= reportView.get();
+    render(() => {
+        if (carried) reportView.set(carried);
+        carried = null;
+    });
+});

@@ -22,6 +22,14 @@ const budgetText = (budget) =>
         .join(" or ");
 const metricName = (metric) => kMetricNames[metric] ?? metric;
 
+// How errors are compared, in words: docs/statistics.md. Several looks share the 5 % between them.
+const kLooks = data.resolved?.looks ?? comparisons[0]?.looks ?? 1;
+const kPaired = data.resolved?.common_random_numbers ?? comparisons[0]?.paired ?? false;
+const kConfidence = kLooks > 1 ? percent(1 - 0.05 / kLooks) : "95 %";
+const kIntervalName = `${kConfidence} interval${kLooks > 1 ? ` (95 % over all ${kLooks} looks)` : ""}`;
+const kTestName = kPaired ? "sign-flip test of pairs with common random numbers" : "permutation test of complete runs";
+const kCorrectionName = `Holm’s correction over all comparisons of the run${kLooks > 1 ? `, times ${kLooks} looks` : ""}`;
+
 /// The numbers of a feature called "hole_ROW_COL".
 const holeIndex = (name) => /^hole_(\d+)_(\d+)$/.exec(name)?.slice(1).map(Number);
 
@@ -34,7 +42,9 @@ function holeGrid(cell) {
     const holes = features.map(([name, feature]) => {
         const [row, column] = holeIndex(name);
         const ratio = feature.truth > 0 ? feature.share / feature.truth : NaN;
-        const ratios = (feature.per_replicate ?? []).map((share) => (feature.truth > 0 ? share / feature.truth : NaN));
+        const ratios = (feature.per_replicate ?? []).map((share) =>
+            feature.truth > 0 && isNumber(share) ? share / feature.truth : NaN,
+        );
         return {
             ...feature,
             row,
@@ -46,6 +56,10 @@ function holeGrid(cell) {
     });
     return { rows, columns, holes };
 }
+
+/// Arrays over replicates hold the finished ones alone; their numbers are those of the folders.
+const replicateNumber = (cell, index) => cell.replicate_numbers?.[index] ?? index;
+const replicateIndex = (cell, number) => cell.replicate_numbers?.indexOf(number) ?? number;
 
 /// Relative error of a hole's brightness in one run: root mean square over holes, for each replicate.
 function replicateHoleErrors(grid) {
@@ -129,7 +143,7 @@ const baselineOf = (cell) => {
 
 function verdictSentence(c) {
     const ratio = isNumber(c.ratio)
-        ? `${c.sampler}’s ${metricName(c.metric)} is ${number(c.ratio)} × ${c.baseline}’s (95 % ${interval(c.ci95)}), p = ${pValue(c.p_adjusted ?? c.p)}`
+        ? `${c.sampler}’s ${metricName(c.metric)} is ${number(c.ratio)} × ${c.baseline}’s (${kConfidence} ${interval(c.ci95)}), p = ${pValue(c.p_adjusted ?? c.p)}`
         : `${c.sampler} against ${c.baseline}`;
     return `${ratio}: ${c.verdict ?? "undecided"}.`;
 }

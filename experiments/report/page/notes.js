@@ -16,10 +16,13 @@ function allWarnings() {
             add("Reference too poor: its variance exceeds 10 % of the smallest error reported.", cell.cell);
         const nonFinite = cell.result.non_finite;
         const bad = typeof nonFinite === "number" ? nonFinite : sum(Object.values(nonFinite ?? {}).filter(isNumber));
-        if (bad > 0) add(`Non-finite values were rejected (run 0: ${count(bad)}).`, cell.cell);
+        if (bad > 0) add(`Non-finite values were rejected (run ${resultRun(cell)}: ${count(bad)}).`, cell.cell);
     }
     return [...found];
 }
+
+/// The run whose result file the page has: the first finished one.
+const resultRun = (cell) => cell.result.replicate ?? 0;
 
 const biasLedgers = () =>
     cells.map((cell) => [cell, cell.result.bias_ledger ?? []]).filter(([, ledger]) => ledger.length);
@@ -111,7 +114,7 @@ function provenanceSection() {
             el(
                 "tr",
                 {},
-                el("th", { scope: "row" }, `sha256 of ${cell.cell}/r000`),
+                el("th", { scope: "row" }, `sha256 of ${cell.cell}/r${String(resultRun(cell)).padStart(3, "0")}`),
                 el("td", { class: "text" }, cell.result.image_sha256),
             ),
         );

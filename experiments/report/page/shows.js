@@ -6,15 +6,21 @@ const errorScale = (title) => ({
     title,
 });
 
-/// By key; `map` is what stands for the picture of a cell, `scale` and `meaning` explain it.
+/// Of how many pixels, n × n, one of the page's pictures is the mean.
+const kShrink = data.shrink ?? 1;
+const squares = (n) => `${n} × ${n} pixels`;
+
+/// By key; `map` is what stands for the picture of a cell, `scale` and `meaning` explain it. Of what shows noise, `block` is
+/// the edge of the squares of pixels whose means it shows.
 const kShows = [
     { id: "tones", name: "picture" },
     {
         id: "error",
         key: "e",
         name: "relative error",
-        scale: errorScale("relative error of a pixel"),
+        scale: errorScale(kShrink > 1 ? "relative error" : "relative error of a pixel"),
         meaning: "√ of the mean over channels of (x − r)² ∕ (r² + 0.01): what relMSE averages, before the square.",
+        block: () => kShrink,
     },
     {
         id: "deviation",
@@ -24,6 +30,7 @@ const kShows = [
         scale: errorScale("relative standard deviation"),
         meaning:
             "Of luminance over runs, relative to √(mean² + 0.01): the error of one run that is noise. What is brighter in the map of errors is bias, or luck.",
+        block: (cell) => blockMap(pictureIds(cell).deviation, deviationColour)?.block ?? 1,
     },
     {
         id: "tests",
@@ -61,8 +68,18 @@ const kShows = [
 ];
 const showOf = (id) => kShows.find((show) => show.id === id);
 
-const showLegend = ({ scale, meaning }) =>
-    scale ? [colourBar(scale.map, scale.labels, scale.title), el("p", {}, meaning)] : [];
+/// The scale of what is shown of a group, and whether means make its noise smaller than that of pixels.
+function scaleOf({ scale, block }, group) {
+    const n = block ? Math.max(...group.cells.map(block)) : 1;
+    return n > 1 ? { ...scale, title: `${scale.title}, of means over ${squares(n)}`, ofMeans: true } : scale;
+}
+
+function showLegend(show, group) {
+    const scale = scaleOf(show, group);
+    if (!scale) return [];
+    const smaller = scale.ofMeans ? " Of means over several pixels: noise reads smaller than that of a pixel." : "";
+    return [colourBar(scale.map, scale.labels, scale.title), el("p", {}, show.meaning, smaller)];
+}
 
 /// What the tests over a cell's map found, in words.
 function testsNote(cell) {

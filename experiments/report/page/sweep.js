@@ -35,10 +35,15 @@ function sweptPath(path, judged) {
     };
 }
 
-/// The swept values of a scene: paths with at least two, the cells that have an error, and which paths vary together.
+/// A logarithmic scale has no place for other errors.
+const hasPlace = (cell) => cell.metrics[primaryMetric].mean > 0;
+const kNoPlace = "error ≤ 0: reference too poor";
+const noPlaceText = (cell) => (isNumber(cell.metrics[primaryMetric].mean) ? kNoPlace : "error not known");
+
+/// The swept values of a scene: paths with at least two, the cells that are judged, and which paths vary together.
 function sweepOf(scene) {
     const judged = cells.filter(
-        (cell) => cell.scene === scene && cell.sweep && cell.metrics?.[primaryMetric]?.mean > 0,
+        (cell) => cell.scene === scene && cell.sweep && cell.metrics?.[primaryMetric],
     );
     const names = [...new Set(judged.flatMap((cell) => Object.keys(cell.sweep)))];
     const paths = names.map((path) => sweptPath(path, judged)).filter((path) => path.values.length > 1);
@@ -80,11 +85,11 @@ const samplerLook = (sampler) => {
     return { label: sampler, order, colour: samplerColour(order) };
 };
 
-/// The samplers' lines over one path. A sampler that the path leaves as it is is the same everywhere: a dashed line.
+/// The samplers' lines over one path, through the cells that have a place. A sampler that the path leaves as it is is the same everywhere: a dashed line.
 function difficultySeries(facet, axis) {
     const range = [axis.values[0], axis.values.at(-1)].map(axis.at);
     return samplerNames.flatMap((sampler) => {
-        const own = facet.cells.filter((cell) => cell.sampler === sampler);
+        const own = facet.cells.filter((cell) => cell.sampler === sampler && hasPlace(cell));
         const swept = own.filter((cell) => axis.path in cell.sweep);
         const point = (cell, x) => {
             const { mean: y, ci95 } = cell.metrics[primaryMetric];
@@ -101,10 +106,9 @@ function difficultySeries(facet, axis) {
 
 function difficultyPlots(sweep, axis) {
     const others = sweep.paths.filter((path) => sweep.crosses(path, axis));
-    const drawn = facets(sweep.judged, others).map((facet) => ({
-        ...facet,
-        series: () => difficultySeries(facet, axis),
-    }));
+    const drawn = facets(sweep.judged, others)
+        .map((facet) => ({ ...facet, series: () => difficultySeries(facet, axis) }))
+        .filter((facet) => facet.series().length);
     const points = drawn.flatMap((facet) => facet.series().flatMap((s) => s.points));
     return el(
         "div",
@@ -145,7 +149,7 @@ function mapFacets(sweep, x, y) {
 /// The figures of one scene for a chosen pair of paths: errors on one scale, and ratios to the baseline on another.
 function sweepMaps(sweep, [x, y]) {
     const drawn = mapFacets(sweep, x, y);
-    const errors = drawn.flatMap((facet) => facet.cells.map((cell) => cell.metrics[primaryMetric].mean));
+    const errors = drawn.flatMap((facet) => facet.cells.filter(hasPlace).map((cell) => cell.metrics[primaryMetric].mean));
     const [lo, hi] = [Math.min(...errors), Math.max(...errors)];
     const ratioOf = (cell) => comparisonsOf(cell)[0]?.ratio;
     const limit = ratioLimit(drawn.flatMap((facet) => facet.cells.map(ratioOf)));
@@ -153,12 +157,14 @@ function sweepMaps(sweep, [x, y]) {
         {
             title: metricName(primaryMetric),
             value: (cell) => cell.metrics[primaryMetric].mean,
+            shows: () => true,
             colour: (error) => magma(hi > lo ? 0.12 + (0.83 * Math.log(error / lo)) / Math.log(hi / lo) : 0.5),
             bar: { map: (t) => magma(0.12 + 0.83 * t), labels: [lo, Math.sqrt(lo * hi), hi].map((v) => number(v, 2)) },
         },
         {
             title: `ratio to ${drawn.flatMap((facet) => facet.cells.map((cell) => comparisonsOf(cell)[0]?.baseline)).find(Boolean)}`,
             value: ratioOf,
+            shows: (cell) => comparisonsOf(cell).length > 0,
             colour: (ratio) => ratioColour(limit)(ratio),
             bar: { map: (t) => diverging(2 * t - 1), labels: ratioLabels(limit) },
             mark: (cell) => comparisonsOf(cell)[0]?.verdict === "undecided",
@@ -166,7 +172,7 @@ function sweepMaps(sweep, [x, y]) {
     ];
     const row = (kind) =>
         drawn
-            .filter((facet) => facet.cells.some((cell) => kind.value(cell) > 0))
+            .filter((facet) => facet.cells.some(kind.shows))
             .map((facet) => {
                 const name = `${kind.title} over ${x.name} and ${y.name}, ${sweep.scene}, ${facet.title}`;
                 return figure(name, (paper) =>
@@ -184,6 +190,7 @@ function describeSweepCell(cell) {
     return [
         el("b", {}, `${cell.sampler}, ${settingsText(Object.entries(cell.sweep))}`),
         line(`${metricName(primaryMetric)} ${number(error)}${isInterval(ci95) ? ` (${interval(ci95)})` : ""}`),
+        !hasPlace(cell) && line(noPlaceText(cell)),
         comparison &&
             line(
                 `${number(comparison.ratio)} × ${comparison.baseline}’s${isInterval(comparison.ci95) ? ` (${interval(comparison.ci95)})` : ""}, p = ${pValue(comparison.p_adjusted ?? comparison.p)}: ${comparison.verdict}`,
@@ -191,7 +198,8 @@ function describeSweepCell(cell) {
     ].filter(Boolean);
 }
 
-/// A square per cell, its value in it; a ring marks what is undecided. Hover and the arrow keys read it.
+/// A square per cell, its value in it; grey with a stroke where a value has no place on the scale; a ring marks what is
+/// undecided. Hover and the arrow keys read it.
 function heatMap({ name, title, x, y, cells: shown, kind, paper }) {
     const frame = plotFrame(
         { label: "", names: y.values.map(valueText), values: [] },
@@ -213,10 +221,10 @@ function heatMap({ name, title, x, y, cells: shown, kind, paper }) {
     for (const cell of shown) {
         const [column, row] = [x.index(cell.sweep[x.path]), y.index(cell.sweep[y.path])],
             value = kind.value(cell);
-        if (!(value > 0)) continue;
-        const rgb = kind.colour(value),
+        if (!kind.shows(cell)) continue;
+        const rgb = value > 0 ? kind.colour(value) : kNotJudged,
             [cx, cy] = [xScale.at(column), yScale.at(row)],
-            text = number(value, 2);
+            text = value > 0 ? number(value, 2) : "";
         const square = svg(
             "g",
             { "data-cell": cell.cell },
@@ -228,6 +236,12 @@ function heatMap({ name, title, x, y, cells: shown, kind, paper }) {
                 fill: rgbToCss(rgb),
                 stroke: css("--paper"),
             }),
+            !(value > 0) &&
+                svg("path", {
+                    class: "no-place",
+                    d: `M${cx - width / 2} ${cy + height / 2}l${width} ${-height}`,
+                    stroke: css("--paper"),
+                }),
             textWidth(text) < width - 6 &&
                 height > 14 &&
                 textAt(cx, cy + 4, text, { "text-anchor": "middle", fill: contrastInk(rgb) }),
@@ -315,6 +329,11 @@ function sweepFigures(sweep) {
         .map((sampler) => sweep.judged.find((cell) => cell.sampler === sampler))
         .filter(Boolean)
         .map((cell) => el("li", {}, lineMark(samplerLook(cell.sampler)), el("b", {}, cell.sampler)));
+    const without = sweep.judged.filter((cell) => !hasPlace(cell));
+    for (const text of new Set(without.map(noPlaceText))) {
+        const names = without.filter((cell) => noPlaceText(cell) === text).map((cell) => cell.cell);
+        legend.push(el("li", { class: "ci" }, `not drawn, ${text}: ${names.join("; ")}`));
+    }
     return el(
         "div",
         { class: "group" },
@@ -333,7 +352,7 @@ function sweepSection() {
     return section(
         "sweep",
         "Error against difficulty",
-        "Mean over runs, band: 95 % interval; dashed: a sampler that the swept value leaves as it is. In maps of ratios blue is better than the baseline, orange worse, and a ring marks an undecided verdict.",
+        `Mean over runs, band: ${kIntervalName}; dashed: a sampler that the swept value leaves as it is. In maps of ratios blue is better than the baseline, orange worse, and a ring marks an undecided verdict. Grey with a stroke: ${kNoPlace}.`,
         sweeps.map(sweepFigures),
     );
 }

@@ -40,7 +40,7 @@ function cellColumns() {
         },
         {
             title: metricName(primaryMetric),
-            meaning: "primary metric: mean over runs, 95 % interval",
+            meaning: `primary metric: mean over runs, ${kIntervalName}`,
             wide: true,
             value: (c) => primary(c)?.mean,
             show: (c) => metricCell(c, primaryMetric, false),
@@ -57,13 +57,13 @@ function cellColumns() {
         },
         {
             title: "ratio",
-            meaning: "to the baseline’s error, 95 % interval",
+            meaning: `to the baseline’s error, ${kIntervalName}`,
             value: (c) => comparison(c)?.ratio,
             show: (c) => [number(comparison(c)?.ratio), el("span", { class: "ci" }, interval(comparison(c)?.ci95))],
         },
         {
             title: "p",
-            meaning: "exact permutation test, after Holm’s correction",
+            meaning: `${kTestName}, after ${kCorrectionName}`,
             value: (c) => comparison(c)?.p_adjusted ?? comparison(c)?.p,
             show: (c) => pValue(comparison(c)?.p_adjusted ?? comparison(c)?.p),
         },
@@ -78,7 +78,7 @@ function cellColumns() {
                 title: metricName(metric),
                 meaning: "mean over runs; describes, carries no verdict",
                 value: (c) => c.metrics?.[metric]?.mean,
-                hover: (c) => `95 % ${interval(c.metrics?.[metric]?.ci95)}`,
+                hover: (c) => `${kConfidence} ${interval(c.metrics?.[metric]?.ci95)}`,
             })),
         { title: "variance", value: (c) => c.variance },
         {
@@ -126,8 +126,13 @@ function cellColumns() {
     return columns.filter(present);
 }
 
+/// As the sampler's points in plots.
 const samplerMark = (cell) =>
-    el("i", { class: "mark", style: `background: ${samplerColour(cell.order)}`, "aria-hidden": true });
+    svg(
+        "svg",
+        { class: "mark", viewBox: "0 0 12 12", width: 12, height: 12, "aria-hidden": true },
+        pointMark(cell.order, 6, 6, samplerColour(cell.order), 4),
+    );
 
 function sortRows(body, table, index, header) {
     const descending = header.getAttribute("aria-sort") === "ascending";
@@ -200,7 +205,7 @@ function cellsSection() {
     return section(
         "cells",
         "Cells",
-        "One row per scene and sampler. Intervals are 95 % over complete runs. A heading sorts; hover explains it.",
+        `One row per scene and sampler. Errors and ratios have a ${kIntervalName}, from complete runs. A heading sorts; hover explains it.`,
         el("div", { class: "scroll" }, table),
     );
 }

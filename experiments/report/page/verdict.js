@@ -41,8 +41,8 @@ function speedupSentence(comparison) {
         range = interval(ci95);
     if (!isNumber(speedup) && !range) return null;
     const value = isNumber(speedup)
-        ? `${number(speedup)} ×${range && ` (95 % ${range})`}`
-        : `${baseline} has no snapshot at this error (95 % ${range} ×)`;
+        ? `${number(speedup)} ×${range && ` (${kConfidence} ${range})`}`
+        : `${baseline} has no snapshot at this error (${kConfidence} ${range} ×)`;
     return el("p", { class: "speedup" }, `Speed-up at equal error: ${value}.`);
 }
 
@@ -64,7 +64,7 @@ function forestRow(comparison, scale) {
         class: `forest ${comparison.verdict ?? ""}`,
         viewBox: `0 0 ${kForest.width} ${kForest.height}`,
         role: "img",
-        "aria-label": `ratio ${number(comparison.ratio)}, 95 % interval ${interval(comparison.ci95)}`,
+        "aria-label": `ratio ${number(comparison.ratio)}, ${kIntervalName} ${interval(comparison.ci95)}`,
     });
     root.append(svg("line", { class: "one", x1: x(1), x2: x(1), y1: 0, y2: kForest.height }));
     if (isInterval(comparison.ci95) && comparison.ci95[0] > 0)
@@ -121,7 +121,7 @@ function forestFigure(name) {
             `${metricName(primaryMetric)} over that of ${[...new Set(judged.map((c) => c.baseline))].join(", ")}`,
             { "text-anchor": "middle", fill: muted },
         ),
-        textAt(right + 8, 10, "ratio (95 %)", { fill: muted }),
+        textAt(right + 8, 10, `ratio (${kConfidence})`, { fill: muted }),
         ...x
             .spacedTicks()
             .flatMap((tick) => [
@@ -198,7 +198,7 @@ function verdictSection() {
             "p",
             { class: "note" },
             `The ratio is E[${metricName(primaryMetric)}] of the sampler over that of the baseline at equal `,
-            "budget, with its 95 % interval; a verdict needs p ≤ 0.05 after Holm’s correction over all comparisons of the run.",
+            `budget, with its ${kIntervalName}; a verdict needs p ≤ 0.05 in a ${kTestName}, after ${kCorrectionName}.`,
         ),
     );
 }

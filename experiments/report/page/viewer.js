@@ -14,6 +14,7 @@ class Viewer {
             shown: 0,
             split: null,
             left: 0,
+            insets: [],
         };
         this.reference = comparableReference(group);
         this.entries = viewerEntries(group, this.reference);
@@ -22,7 +23,7 @@ class Viewer {
         this.fitted = this.state.exposure = fittingExposure(this.reference ?? first);
         this.aspect = first.width / first.height;
         const judged = this.entries.filter((entry) => entry.kind === "replicate").at(-1);
-        this.insets = defaultCrops(judged?.picture, this.reference);
+        this.state.insets = defaultCrops(judged?.picture, this.reference);
         this.shows = kShows.filter(({ id, map }) =>
             map ? group.cells.some((cell) => map(pictureIds(cell))) : id !== "error" || this.reference,
         );
@@ -37,12 +38,12 @@ class Viewer {
 
     build() {
         this.controls = new ViewerControls(this);
-        this.stage = this.linkedCanvas("stage", () => this.entries[this.state.shown]);
+        this.stage = this.linkedCanvas("stage", (x) => this.entryAt(x));
         this.stage.tabIndex = 0;
         this.stage.setAttribute("role", "img");
         this.stageTitle = el("p", { class: "stage-title", "aria-live": "polite" });
         this.readout = el("p", { class: "readout" }, "\u00a0");
-        this.handles = this.insets.map((inset, i) => this.insetHandle(inset, i));
+        this.handles = this.state.insets.map((_, i) => this.insetHandle(i));
         this.divider = this.splitDivider();
         this.tiles = this.entries.map((entry, i) => this.tile(entry, i));
         const columns = this.entries.filter((entry) => entry.kind !== "mean").length;
@@ -93,7 +94,7 @@ class Viewer {
         canvas.addEventListener("click", () => {
             if (!this.dragged) this.set({ shown: index });
         });
-        const crops = this.insets.map((_, i) =>
+        const crops = this.state.insets.map((_, i) =>
             el("canvas", { class: `crop crop-${i}`, style: `aspect-ratio: ${this.aspect}`, "aria-hidden": true }),
         );
         return Object.assign(el("div", { class: "tile" }, label, canvas, el("div", { class: "crops" }, crops)), {
@@ -104,8 +105,9 @@ class Viewer {
         });
     }
 
-    insetHandle(inset, index) {
+    insetHandle(index) {
         const move = (du, dv) => {
+            const inset = this.state.insets[index];
             inset.u = clamp(inset.u + du, inset.size / 2, 1 - inset.size / 2);
             inset.v = clamp(inset.v + dv, inset.size / 2, 1 - inset.size / 2);
             this.draw();
@@ -139,8 +141,14 @@ class Viewer {
         return divider;
     }
 
-    /// A canvas whose drags and wheel move the common view.
-    linkedCanvas(name, entry) {
+    /// What the stage displays `x` pixels from its left edge.
+    entryAt(x) {
+        const { split, left, shown } = this.state;
+        return this.entries[split !== null && x < split * this.stage.clientWidth ? left : shown];
+    }
+
+    /// A canvas whose drags and wheel move the common view; `entryAt(x)` is what it displays there.
+    linkedCanvas(name, entryAt) {
         const canvas = el("canvas", { class: name });
         canvas.addEventListener("pointerdown", () => (this.dragged = false));
         withDrag(canvas, (dx, dy) => {
@@ -157,7 +165,7 @@ class Viewer {
             },
             { passive: false },
         );
-        canvas.addEventListener("pointermove", (e) => this.describePixel(entry(), this.toImage(canvas, e)));
+        canvas.addEventListener("pointermove", (e) => this.describePixel(entryAt(e.offsetX), this.toImage(canvas, e)));
         return canvas;
     }
 
@@ -195,7 +203,7 @@ class Viewer {
         this.draw();
     }
 
-    /// Keys that work anywhere on the page while this scene's viewer is the visible one.
+    /// Keys that work anywhere on the page while this scene's viewer is the active one.
     key(e) {
         const { state } = this;
         const pan = kArrows[e.key];
@@ -230,7 +238,8 @@ class Viewer {
                 ? ` · reference ${rgb(this.reference)} · relative error ${percent(image.relativeError(i, this.reference))}`
                 : "";
         const overRuns = entry.cell ? placeNote(entry.cell, u, v) : "";
-        this.readout.textContent = `pixel ${x}, ${y}: ${rgb(image)}${against}${overRuns}`;
+        const place = kShrink > 1 ? `${squares(kShrink)} from ${kShrink * x}, ${kShrink * y}` : `pixel ${x}, ${y}`;
+        this.readout.textContent = `${entryCaption(entry)} · ${place}: ${rgb(image)}${against}${overRuns}`;
     }
 
     /// What stands for an entry now, and how much wider and higher it is than the picture.
@@ -297,30 +306,30 @@ class Viewer {
                 label: entry.title,
                 aspect: this.aspect,
                 canvas: painted(this.state, entry),
-                crops: this.insets.map((inset, k) => ({
+                crops: this.state.insets.map((inset, k) => ({
                     canvas: painted({ zoom: 1 / inset.size, ...inset }, entry),
                     colour: kInsetColours[k],
                 })),
             }));
-        return pictureStrip(name, parts, { scale: showOf(this.state.show).scale });
+        return pictureStrip(name, parts, { scale: scaleOf(showOf(this.state.show), this.group) });
     }
 
     draw() {
         const { state } = this;
         this.controls.update(state);
         const explained = showOf(state.show).scale || !this.reference ? showOf(state.show) : showOf("error");
-        this.legend.replaceChildren(...showLegend(explained));
+        this.legend.replaceChildren(...showLegend(explained, this.group));
         if (!this.stage.clientWidth) return;
         const shown = this.entries[state.shown];
         this.paintStage();
-        const nameOf = (entry) => `${entry.title}${entry.note ? `, ${entry.note}` : ""}`;
-        const caption = `${nameOf(shown)}${state.split === null ? "" : `; left: ${nameOf(this.entries[state.left])}`}`;
+        const left = state.split === null ? "" : `; left: ${entryCaption(this.entries[state.left])}`;
+        const caption = `${entryCaption(shown)}${left}`;
         this.stageTitle.replaceChildren(el("kbd", {}, state.shown + 1), ` ${caption}`);
         this.stage.setAttribute("aria-label", caption);
         this.tiles.forEach((tile, i) => {
             this.paint(tile.canvas, state, tile.entry);
             tile.crops.forEach((crop, k) =>
-                this.paint(crop, { zoom: 1 / this.insets[k].size, ...this.insets[k] }, tile.entry),
+                this.paint(crop, { zoom: 1 / state.insets[k].size, ...state.insets[k] }, tile.entry),
             );
             const found = tile.entry.kind === "mean" && showOf(state.show).note?.(tile.entry.cell);
             tile.label.querySelector(".tile-note").textContent = found || (tile.entry.note ?? "");
@@ -328,7 +337,7 @@ class Viewer {
         });
         const size = this.imageSize(this.stage.clientWidth, this.stage.clientHeight);
         this.handles.forEach((handle, k) => {
-            const inset = this.insets[k];
+            const inset = state.insets[k];
             Object.assign(handle.style, {
                 width: `${inset.size * size.width}px`,
                 height: `${inset.size * size.height}px`,
@@ -342,8 +351,10 @@ class Viewer {
 const viewers = [];
 const kInsetColours = ["#ff9d2e", "#5cc3ff"];
 
-/// The viewer nearest the middle of the window takes the keys.
+/// The viewer that has the focus takes the keys, or else the one nearest the middle of the window.
 function activeViewer() {
+    const focused = viewers.find((viewer) => viewer.element.contains(document.activeElement));
+    if (focused) return focused;
     const distance = (viewer) => {
         const box = viewer.element.getBoundingClientRect();
         return Math.abs((box.top + box.bottom) / 2 - innerHeight / 2);
@@ -372,7 +383,7 @@ function imagesSection() {
         "Images",
         "Reference, one run, and the mean over runs of each sampler; zoom, pan and exposure are common to all." +
             (data.exact === false
-                ? ` To keep the page small they are JPEG${data.shrink > 1 ? ` at 1∕${data.shrink} of their size` : ""}: values of pixels are some per cent off.`
+                ? ` To keep the page small they are JPEG${kShrink > 1 ? ` of means over ${squares(kShrink)}` : ""}: values are some per cent off.`
                 : ""),
         shown.map((group) =>
             el(

@@ -24,12 +24,14 @@ function viewerEntries(group, reference) {
     return entries;
 }
 
+const entryCaption = ({ title, note }) => `${title}${note ? `, ${note}` : ""}`;
+
 /// `which`: "median" or "worst", by the error.
 function chooseReplicates(entries, which) {
     for (const entry of entries.filter(({ kind }) => kind === "replicate")) {
         const ids = pictureIds(entry.cell),
-            replicate = ids[`${which}_replicate`];
-        const value = entry.cell.metrics?.[primaryMetric]?.values?.[replicate];
+            index = replicateIndex(entry.cell, ids[`${which}_replicate`]);
+        const value = entry.cell.metrics?.[primaryMetric]?.values?.[index];
         entry.picture = picture(ids[which]);
         entry.note = `${which} run${isNumber(value) ? `, ${metricName(primaryMetric)} ${number(value)}` : ""}`;
     }

@@ -33,6 +33,7 @@ TEST_CASE("the summary has what scripts and the report read", "[summary]") {
                                 "sampler",
                                 "parameters",
                                 "replicates",
+                                "replicate_numbers",
                                 "metrics",
                                 "variance",
                                 "bias_squared",
@@ -70,6 +71,33 @@ TEST_CASE("the summary has what scripts and the report read", "[summary]") {
     // Three replicates cannot decide anything.
     CHECK(summary["comparisons"][0]["verdict"] == "undecided");
     CHECK(mentions(summary["verdicts"][0], "wall: bdpt has "));
+}
+
+TEST_CASE("arrays over replicates say whose values they hold", "[summary]") {
+    const Folder folder;
+    Json experiment = tinyExperiment();
+    experiment["scenes"] = {
+        {"emitter", {{"type", "grid_of_holes"}, {"holes", 2}, {"back", "emitter"}, {"thickness", 0}}}};
+    experiment["film"]["rfilter"] = {{"type", "box"}};
+    experiment["reference"] = "truth";
+    experiment["max_depth"] = 2;
+    const Plan plan = planOf(folder, experiment);
+    runIn(folder, plan);
+    const Json whole = summarize(plan, folder / "run", {})["cells"][0];
+    CHECK(whole["replicate_numbers"] == Json{0, 1, 2});
+    const fs::path cell = folder / "run/cells" / whole["cell"].get<std::string>();
+    fs::remove_all(cell / "r000");
+    Json dark = JsonDocument::fromFile(cell / "r001/result.json").json();
+    for (Json& energy : dark["feature_energy"]) energy = 0;
+    writeFileAtomically(cell / "r001/result.json", dump(dark));
+    const Json part = summarize(plan, folder / "run", {})["cells"][0];
+    CHECK(part["replicate_numbers"] == Json{1, 2});
+    for (int i = 0; i < 2; ++i) CHECK(part["metrics"]["relmse"]["values"][i] == whole["metrics"]["relmse"]["values"][i + 1]);
+    for (const auto& [name, feature] : part["features"].items()) {
+        REQUIRE(feature["per_replicate"].size() == 2);
+        CHECK(feature["per_replicate"][0].is_null());
+        CHECK(feature["per_replicate"][1] == whole["features"][name]["per_replicate"][2]);
+    }
 }
 
 TEST_CASE("any number of threads makes the same summary, and tells of each cell before it", "[summary]") {

@@ -70,14 +70,16 @@ class Browser:
         self.settle()
 
     def settle(self):
-        """Waits until all is made and two frames are drawn: observers answer in the second."""
+        """Waits until all is made and two frames are drawn: observers answer in the second, and may have it made anew."""
         self.call(
             "POST",
             "/execute/async",
             {
-                "script": "const done = arguments[0], frames = () => document.querySelector('[aria-busy]')"
-                " ? setTimeout(frames, 10) : requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(done, 30)));"
-                "frames()",
+                "script": """const done = arguments[0], isBusy = () => document.querySelector('[aria-busy]') !== null;
+                    const frames = () => requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(end, 30)));
+                    const end = () => isBusy() ? wait() : done();
+                    const wait = () => isBusy() ? setTimeout(wait, 10) : frames();
+                    wait()""",
                 "args": [],
             },
         )

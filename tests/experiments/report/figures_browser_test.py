@@ -243,6 +243,42 @@ def chooses_the_pair_of_a_map(browser, page):
     check(not said, f"the console says {said}")
 
 
+def shows_cells_without_a_place(browser, page):
+    """Errors that a logarithmic scale has no place for: named in words, and squares of their own in maps."""
+    data = made_up_sweep()
+    bad = {"hidden-mlt-holes=4-chains=1000": -1e-4, "hidden-mlt-holes=8-chains=100": None}
+    for cell in data["summary"]["cells"]:
+        if cell["cell"] in bad:
+            cell["metrics"]["relmse"] = {"mean": bad[cell["cell"]], "ci95": None}
+    for comparison in data["summary"]["comparisons"]:
+        if comparison["cell"] in bad:
+            comparison.update(ratio=None, ci95=None, verdict="undecided")
+    squares = """return [...document.querySelectorAll('#sweep .maps figure')].map((figure) =>
+        [figure.querySelectorAll('[data-cell]').length,
+         [...figure.querySelectorAll('[data-cell]:has(.no-place)')].map((g) => g.dataset.cell)])"""
+    with tempfile.TemporaryDirectory() as folder:
+        browser.open(with_data(page, data, pathlib.Path(folder) / "report.html"))
+        for count, without in browser.run(squares):
+            check(count == 12 and set(without) == set(bad), f"{count} squares, without a place {without}")
+        legend = "; ".join(texts(browser, "#sweep .legend li"))
+        for said in (
+            "not drawn, error ≤ 0: reference too poor: hidden-mlt-holes=4-chains=1000",
+            "not drawn, error not known: hidden-mlt-holes=8-chains=100",
+        ):
+            check(said in legend, f"the legend says '{legend}'")
+        browser.run("document.querySelector('#sweep .maps svg').focus()")
+        browser.press(RIGHT, DOWN, DOWN)
+        read = browser.run("return document.getElementById('tooltip').textContent")
+        check("holes = 4, mlt.chains = 1000" in read and "error ≤ 0: reference too poor" in read, f"keys read '{read}'")
+        for cell in data["summary"]["cells"]:
+            cell["metrics"]["relmse"]["mean"] = -1e-4
+        browser.open(with_data(page, data, pathlib.Path(folder) / "report.html"))
+        found = browser.run(squares)
+        check(found and len(found[0][1]) == 12, f"with no error at all the maps are {found}")
+    said = complaints(browser)
+    check(not said, f"the console says {said}")
+
+
 def main():
     tests = [
         loads_without_errors,
@@ -255,7 +291,7 @@ def main():
     ]
     with report(sys.argv) as page, tempfile.TemporaryDirectory() as folder:
         sweep = with_data(page, made_up_sweep(), pathlib.Path(folder) / "sweep.html")
-        tests.append(functools.partial(chooses_the_pair_of_a_map, page=page))
+        tests += [functools.partial(test, page=page) for test in (chooses_the_pair_of_a_map, shows_cells_without_a_place)]
         return run_tests(tests, lambda browser: browser.open(sweep))
 
 

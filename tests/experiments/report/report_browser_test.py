@@ -6,6 +6,7 @@ Without an argument the report is that of the made-up run of report_test.cpp, wh
 
 import copy
 import functools
+import itertools
 import json
 import math
 import pathlib
@@ -328,6 +329,85 @@ def chooses_the_caught_sampler(browser):
     check(browser.run(text) != before, "choosing another sampler changes nothing")
 
 
+# Linear RGB as seen without the cones for red or for green: Machado, Oliveira & Fernandes 2009, severity 1.
+COLOUR_VISION = {
+    "normal": ((1, 0, 0), (0, 1, 0), (0, 0, 1)),
+    "protanopia": (
+        (0.152286, 1.052583, -0.204868),
+        (0.114503, 0.786281, 0.099216),
+        (-0.003882, -0.048116, 1.051998),
+    ),
+    "deuteranopia": (
+        (0.367322, 0.860646, -0.227968),
+        (0.280085, 0.672501, 0.047413),
+        (-0.011820, 0.042940, 0.968881),
+    ),
+}
+SMALLEST_DIFFERENCE = 0.1  # in OKLab, where black and white are 1 apart
+
+
+def linear_rgb(colour):
+    codes = [int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5)]
+    return [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in codes]
+
+
+def times(matrix, vector):
+    return [sum(m * v for m, v in zip(row, vector, strict=True)) for row in matrix]
+
+
+def oklab(rgb):
+    to_cones = (
+        (0.4122214708, 0.5363325363, 0.0514459929),
+        (0.2119034982, 0.6806995451, 0.1073969566),
+        (0.0883024619, 0.2817188376, 0.6299787005),
+    )
+    from_cones = (
+        (0.2104542553, 0.793617785, -0.0040720468),
+        (1.9779984951, -2.428592205, 0.4505937099),
+        (0.0259040371, 0.7827717662, -0.808675766),
+    )
+    return times(from_cones, [cone ** (1 / 3) for cone in times(to_cones, [min(1, max(0, c)) for c in rgb])])
+
+
+def tells_eight_samplers_apart(browser, page):
+    """By colour, whatever cones the eye has, against the page; and by the shape of the mark."""
+    script = page.read_text(encoding="utf-8").split("const kSamplerColours = ")[1].split(";")[0]
+    for scheme, paper in (("light", "#fdfcf9"), ("dark", "#131517")):
+        colours = re.findall(r"#[0-9a-f]{6}", re.search(scheme + r": \[([^]]*)\]", script)[1])
+        check(len(colours) == 8, f"{len(colours)} colours on a {scheme} page")
+        for vision, matrix in COLOUR_VISION.items():
+            for a, b in itertools.combinations(colours, 2):
+                apart = math.dist(*(oklab(times(matrix, linear_rgb(colour))) for colour in (a, b)))
+                check(apart >= SMALLEST_DIFFERENCE, f"{a} and {b} are {apart:.3f} apart in {vision} vision")
+        for colour in colours:
+            low, high = sorted(sum(w * c for w, c in zip((0.2126, 0.7152, 0.0722), linear_rgb(x), strict=True)) for x in (colour, paper))
+            check((high + 0.05) / (low + 0.05) >= 3, f"{colour} on {paper}")
+    marks = browser.run(
+        """const shape = (mark) => mark.tagName + (mark.getAttribute('d') ?? '').replace(/[\\d.\\s-]/g, '') + mark.getAttribute('fill');
+        return ['#cell-table .mark > *', '.viewer .mark > *', '#convergence .point-mark > :nth-child(2)'].map((selector) =>
+            [...new Set([...document.querySelectorAll(selector)].map(shape))].sort())"""
+    )
+    check(len(marks[0]) == 3, f"the marks of three samplers are {marks[0]}")
+    check(marks[0] == marks[1] == marks[2], f"marks differ between table, tiles and plots: {marks}")
+
+
+def names_the_test(browser, page):
+    """The words for p and intervals are those of what was done."""
+    text = "return document.querySelector(arguments[0]).textContent"
+    meaning = "return [...document.querySelectorAll('#cell-table th button')].find((b) => b.textContent === 'p').title"
+    check("permutation test of complete runs, after Holm" in browser.run(meaning), browser.run(meaning))
+    check("95 % interval" in browser.run(text, "#verdict .note"), browser.run(text, "#verdict .note"))
+    data = data_of(page)
+    for comparison in data["summary"]["comparisons"]:
+        comparison.update(paired=True, looks=3)
+    with tempfile.TemporaryDirectory() as folder:
+        browser.open(with_data(page, data, pathlib.Path(folder) / "report.html"))
+    for said in (browser.run(meaning), browser.run(text, "#verdict .note")):
+        check("sign-flip test of pairs with common random numbers" in said and "times 3 looks" in said, said)
+    for said in (browser.run(text, f"#{name} {part}") for name, part in (("verdict", ".note"), ("cells", ".lead"))):
+        check("98.3\u202f% interval (95 % over all 3 looks)" in said, said)
+
+
 def warns_in_red(browser):
     colour = browser.run("return getComputedStyle(document.getElementById('warnings')).color")
     red, green, blue = map(int, re.findall(r"\d+", colour)[:3])
@@ -419,7 +499,7 @@ def reads_jpegs(browser, page):
     browser.press("2")
     browser.drag(STAGE, 5, 5)
     readout = browser.run("return document.querySelector(`${arguments[0]} .readout`).textContent", VIEWER)
-    values = [float(value) for value in re.match(r"pixel \d+, \d+: ([\d., ]+)", readout)[1].rstrip(" ,").split(", ")]
+    values = [float(value) for value in re.search(r"pixel \d+, \d+: ([\d., ]+)", readout)[1].rstrip(" ,").split(", ")]
     expected = [0.01 * math.sinh(0.03 * code) for code in (100, 150, 200)]
     check(all(abs(x / y - 1) < 0.04 for x, y in zip(values, expected, strict=True)), f"{readout}, not {expected}")
     lead = browser.run("return document.querySelector('#images .lead').textContent")
@@ -498,7 +578,8 @@ def test_page(page):
         follows_the_colour_scheme,
         names_every_control,
     ]
-    on_other_pages = [functools.partial(test, page=page) for test in (survives_missing_data, reads_jpegs, opens_a_large_run)]
+    others = (tells_eight_samplers_apart, names_the_test, survives_missing_data, reads_jpegs, opens_a_large_run)
+    on_other_pages = [functools.partial(test, page=page) for test in others]
     return run_tests([*tests, *on_other_pages], lambda browser: browser.open(page))
 
 

@@ -129,6 +129,25 @@ TEST_CASE("the mean over replicates is embedded, not a replicate") {
     CHECK(page.find(">" + encodeBase64(encodeRgb9e5(Image(2, 2, Rgb(2)))) + "<") != page.npos);
 }
 
+TEST_CASE("without the first replicate the others stand for the cell by their numbers") {
+    RunFolder folder;
+    for (int r = 1; r < 4; ++r) {
+        const fs::path replicate = folder.path / "cells/a" / ("r00" + std::to_string(r));
+        fs::create_directories(replicate);
+        writeExr((replicate / "image.exr").string(), Image(2, 2, Rgb(float(r))));
+        writeFileAtomically(replicate / "result.json",
+                            R"({"replicate": )" + std::to_string(r) + R"(, "bias_ledger": ["clamped"]})");
+    }
+    writeFileAtomically(folder.path / "summary.json",
+                        R"({"cells": [{"cell": "a", "scene": "s", "sampler": "x", "replicate_numbers": [1, 2, 3],
+                            "metrics": {"relmse": {"values": [0.3, 0.1, 0.2]}}}]})");
+    writeReport(folder.path);
+    const std::string page = readFile(folder.path / "report.html");
+    CHECK(page.find(R"("results":{"a":{"replicate":1,"bias_ledger":["clamped"]}})") != page.npos);
+    CHECK(page.find(R"("median_replicate":3)") != page.npos);
+    CHECK(page.find(R"("worst_replicate":1)") != page.npos);
+}
+
 TEST_CASE("images of techniques are read by their names, in pairs and small") {
     RunFolder folder;
     const fs::path extra = folder.path / "cells/a/r000/extra";
