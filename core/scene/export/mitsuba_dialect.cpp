@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cctype>
 #include <cmath>
 
@@ -13,7 +14,16 @@ namespace ulam {
 namespace {
 
 std::string asItIs(const std::string& name) { return name; }
-Json unchanged(const JsonNode& plugin, std::vector<std::string>&) { return plugin.json(); }
+bool isRelief(const std::string& type) { return type == "bumpmap" || type == "normalmap"; }
+constexpr std::array kReliefSwitches{"flip_invalid_normals", "use_shadowing_function"};
+
+/// Mitsuba 3.9 turns normals of bump and normal maps that face away, and darkens what they light, unless told not to.
+Json inNewWords(const JsonNode& plugin, std::vector<std::string>&) {
+    Json result = plugin.json();
+    if (isRelief(pluginName(plugin)))
+        for (const char* name : kReliefSwitches) result[name] = false;
+    return result;
+}
 
 /// "to_world" becomes "toWorld", "int_ior" "intIOR".
 std::string camelCase(const std::string& name) {
@@ -97,6 +107,8 @@ Json inOldWords(const JsonNode& plugin, std::vector<std::string>& lost) {
     if (type == "bitmap") oldBitmap(result);
     if (type == "conductor" || type == "roughconductor") oldMetal(result);
     if (type == "hdrfilm") result["banner"] = false;
+    if (isRelief(type))
+        for (const char* name : kReliefSwitches) result.erase(name);
     if (type == "bumpmap") oldBumpmap(result, lost);
     if (type == "sunsky") oldSky(result, lost);
     return result;
@@ -112,7 +124,7 @@ ParameterInfo parameter(const char* name, const char* type) {
 }  // namespace
 
 const MitsubaDialect& mitsuba3() {
-    static const MitsubaDialect dialect{"3.0.0", {"scene.xml", " Written by Ulam for Mitsuba 3 "}, nearestInMitsuba3, asItIs, unchanged, {}, false};
+    static const MitsubaDialect dialect{"3.0.0", {"scene.xml", " Written by Ulam for Mitsuba 3 "}, nearestInMitsuba3, asItIs, inNewWords, {}, false};
     return dialect;
 }
 

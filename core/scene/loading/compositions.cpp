@@ -38,10 +38,21 @@ struct MixtureParameters {
     }
 };
 
-struct BumpmapParameters {
+/// What Mitsuba 3.9 does to new normals unless told not to.
+struct ReliefParameters {
+    bool flip = false, shadow = false;
+    template <class V>
+    void describe(V& v) {
+        v("flip_invalid_normals", flip, {.help = "whether normals that face away are turned: only false is supported"});
+        v("use_shadowing_function", shadow, {.help = "whether light is attenuated near the horizon of the new normal: only false is supported"});
+    }
+};
+
+struct BumpmapParameters : ReliefParameters {
     double scale = 1;
     template <class V>
     void describe(V& v) {
+        ReliefParameters::describe(v);
         v("scale", scale, {.help = "factor on the heights, which the nested texture holds in units of the scene"});
     }
 };
@@ -72,10 +83,11 @@ struct RoughCoatingParameters : CoatingParameters {
     }
 };
 
-struct NormalmapParameters {
+struct NormalmapParameters : ReliefParameters {
     JsonNode normalmap;
     template <class V>
     void describe(V& v) {
+        ReliefParameters::describe(v);
         v("normalmap", normalmap,
           {.help = "texture (set its \"raw\") of normals n as colours (n + 1) / 2, in the frame of the shading normal "
                    "(blue) and the direction of growing u (red)"});
@@ -315,18 +327,24 @@ Material readMixture(const JsonNode& node, PluginResolver& resolver, int depth) 
     });
 }
 
+void requireSupported(const ReliefParameters& p, const JsonNode& node) {
+    for (const auto& [name, given] : {std::pair("flip_invalid_normals", p.flip), std::pair("use_shadowing_function", p.shadow)})
+        if (given) node.at(name).fail(fmt::format("{} is not supported", inQuotes(name)), "set it to false");
+}
+
 Material readBumpmap(const JsonNode& node, PluginResolver& resolver, int depth) {
-    const double scale = parsePlugin<BumpmapParameters>(node).scale;
+    const auto p = parsePlugin<BumpmapParameters>(node);
+    requireSupported(p, node);
     const ReliefParts parts = reliefParts(node, bumpmapInfo(), resolver);
     if (!parts.texture) node.fail("bumpmap needs a texture of heights");
     ParameterInfo heights;
     heights.name = parts.texture->key();
-    return relieved(node, parts, {Relief::Kind::Heights, resolver.texture(*parts.texture, heights), scale, {}},
+    return relieved(node, parts, {Relief::Kind::Heights, resolver.texture(*parts.texture, heights), p.scale, {}},
                     resolver, depth);
 }
 
 Material readNormalmap(const JsonNode& node, PluginResolver& resolver, int depth) {
-    parsePlugin<NormalmapParameters>(node);
+    requireSupported(parsePlugin<NormalmapParameters>(node), node);
     const JsonNode texture = node.at("normalmap");
     if (!isPlugin(texture) || !resolver.isTexture(texture)) texture.expected("a texture");
     const ReliefParts parts = reliefParts(node, normalmapInfo(), resolver);

@@ -385,6 +385,8 @@ TEST_CASE("compositions that cannot be are refused, with place and reason") {
     refused(R"({"type": "blendbsdf", "a": {"type": "conductor"}, "b": )" + bumped + "}",
             "under different bump or normal maps");
     refused(R"({"type": "bumpmap", "b": {"type": "conductor"}})", "needs a texture");
+    refused(R"({"type": "bumpmap", "use_shadowing_function": true, "h": {"type": "checkerboard"}, "b": {"type": "diffuse"}})",
+            "not supported");
     refused(R"({"type": "bumpmap", "h": {"type": "bitmap", "filename": "h.exr"}})", "needs one BSDF, not 0");
     refused(R"({"type": "normalmap", "b": {"type": "conductor"}})", "normalmap");
     refused(R"({"type": "coating", "b": {"type": "dielectric"}})", "must not transmit");

@@ -146,6 +146,12 @@ TEST_CASE("export: what has no meaning here is named, not dropped") {
     CHECK(e.leftOut[2] == R"("pixel_format" of "hdrfilm" at /sensor/film/pixel_format)");
 }
 
+TEST_CASE("export: Mitsuba 3 is told not to turn normals, nor to attenuate light at the horizon") {
+    const Exported e(sceneWith(R"("a": {"type": "cube", "bsdf": {"type": "bumpmap", "h": {"type": "checkerboard"}, "x": {"type": "diffuse"}}})"));
+    for (const char* name : {"flip_invalid_normals", "use_shadowing_function"})
+        CHECK(e.value(fmt::format("shape[@id='a']/bsdf[@type='bumpmap']/boolean[@name='{}']", name)) == "false");
+}
+
 TEST_CASE("export: what Mitsuba 3 lacks is written as the nearest, and named") {
     const Exported e(sceneWith(R"(
         "clay": {"type": "roughdiffuse", "reflectance": 0.3, "alpha": 0.5},
