@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 /// The replicate the summary names, or else the one of this rank (0 … 1) in the primary metric, or else the first.
 std::size_t chooseReplicate(const Json& cell, const char* name, double rank, const std::string& metric) {
-    if (const auto named = cell.find(name); named != cell.end() && named->is_number_unsigned())
+    if (const auto named = cell.find(name); named != cell.end() && named->is_number_integer())
         return named->get<std::size_t>();
     const Json values = cell.value(Json::json_pointer("/metrics/" + metric + "/values"), Json::array());
     const Json numbers = cell.value("replicate_numbers", Json::array());
