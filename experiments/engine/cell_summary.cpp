@@ -289,10 +289,10 @@ private:
     void addOrigins() {
         std::map<Json, int> machines, builds;
         for (const Replicate& r : replicates_) {
-            ++machines[{{"processor", r.result.value("processor", "not known")},
-                        {"threads", r.result.at("threads")},
-                        {"simd", r.result.value("simd", Json())}}];
-            ++builds[{{"code_sha256", r.result.value("code_sha256", "not known")}}];
+            ++machines[Json::object({{"processor", r.result.value("processor", "not known")},
+                                     {"threads", r.result.at("threads")},
+                                     {"simd", r.result.value("simd", Json())}})];
+            ++builds[Json::object({{"code_sha256", r.result.value("code_sha256", "not known")}})];
         }
         for (const auto& [name, counts] : {std::pair("machines", machines), std::pair("builds", builds)}) {
             summary_.json[name] = Json::array();

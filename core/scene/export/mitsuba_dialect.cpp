@@ -17,7 +17,7 @@ std::string asItIs(const std::string& name) { return name; }
 bool isRelief(const std::string& type) { return type == "bumpmap" || type == "normalmap"; }
 constexpr std::array kReliefSwitches{"flip_invalid_normals", "use_shadowing_function"};
 
-/// Mitsuba 3.9 turns normals of bump and normal maps that face away, and darkens what they light, unless told not to.
+/// Mitsuba 3.9.1 turns normals of bump and normal maps that face away, and darkens what they light, unless told not to.
 Json inNewWords(const JsonNode& plugin, std::vector<std::string>&) {
     Json result = plugin.json();
     if (isRelief(pluginName(plugin)))

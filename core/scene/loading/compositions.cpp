@@ -38,7 +38,7 @@ struct MixtureParameters {
     }
 };
 
-/// What Mitsuba 3.9 does to new normals unless told not to.
+/// What Mitsuba 3.9.1 does to new normals unless told not to.
 struct ReliefParameters {
     bool flip = false, shadow = false;
     template <class V>
