@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 #include "experiments/engine/provenance.h"
 #include "tests/experiments/engine/tiny.h"
@@ -12,6 +13,15 @@ using namespace ulam::tests;
 namespace fs = std::filesystem;
 
 namespace {
+
+/// Changes a field of a finished replicate, and gives what it was.
+Json changed(const Folder& folder, const char* field, const Json& value) {
+    const fs::path file = folder / "run/cells/wall-bdpt/r001/result.json";
+    Json result = JsonDocument::fromFile(file).json();
+    Json before = std::exchange(result[field], value);
+    writeFileAtomically(file, dump(result));
+    return before;
+}
 
 Json summaryOf(const Folder& folder, const Json& experiment) {
     const Plan plan = planOf(folder, experiment);
@@ -176,11 +186,7 @@ TEST_CASE("results of different builds are told of, and not gone on with in sile
     runIn(folder, plan);
     const auto warnings = [&] { return summarize(plan, folder / "run", {})["warnings"].dump(); };
     CHECK_FALSE(mentions(warnings(), "different builds"));
-    const fs::path file = folder / "run/cells/wall-bdpt/r001/result.json";
-    Json result = JsonDocument::fromFile(file).json();
-    CHECK(result["code_sha256"] == codeHash());
-    result["code_sha256"] = "other code";
-    writeFileAtomically(file, dump(result));
+    CHECK(changed(folder, "code_sha256", "other code") == codeHash());
     CHECK(mentions(warnings(), "results of different builds of the program or its plug-ins stand in 1 of 1 planned comparisons"));
     CHECK(mentions(warnings(), "other code"));
     CHECK(summarize(plan, folder / "run", {})["cells"][0]["builds"].size() +
@@ -191,10 +197,7 @@ TEST_CASE("other numbers of threads make a machine unlike", "[summary]") {
     const Folder folder;
     const Plan plan = planOf(folder, tinyExperiment());
     runIn(folder, plan);
-    const fs::path file = folder / "run/cells/wall-bdpt/r001/result.json";
-    Json result = JsonDocument::fromFile(file).json();
-    result["threads"] = 64;
-    writeFileAtomically(file, dump(result));
+    changed(folder, "threads", 64);
     CHECK(mentions(summarize(plan, folder / "run", {})["warnings"].dump(), "64 threads"));
 }
 
