@@ -46,6 +46,9 @@ private:
             sum += importance_(c.value);
             visit(c);
         });
+        // States are points of a union of cubes, each as large as what is used (Green 1995): a step to a state that uses
+        // more draws the rest uniformly, the step back drops it. Numbers kept after acceptance alone would break the balance.
+        numbers.forgetUnused();
         return sum;
     }
 

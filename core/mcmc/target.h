@@ -24,7 +24,7 @@ public:
 
     virtual Space space() const = 0;
     virtual Tracing& tracing() = 0;
-    /// A Primary proposal: y from y.u, which is extended from `random` as far as it is used.
+    /// A Primary proposal: y from y.u, which is extended from `random`, or cut, to what is used.
     virtual Reject evaluateNumbers(Sample& y, Random& random) = 0;
     /// A Path proposal: π and the splat from y.path and y.factors.
     virtual Reject evaluatePath(Sample& y) = 0;

@@ -54,19 +54,27 @@ private:
     std::array<std::array<Block, kMaxVertices + 1>, kStreams> blocks_;
 };
 
-/// The one source of randomness of all sampling code: replays what the vector holds and extends it lazily.
+/// The one source of randomness of all sampling code: replays what the vector holds, extends it lazily, and can forget
+/// what was not used.
 class Numbers {
 public:
     Numbers(PrimaryVector& vector, Random& random) : vector_(vector), random_(random) {}
 
     const Block& operator()(NumberStream s, int block) {
         while (vector_.size(s) <= block) vector_.append(s, random_.nextBlock());
+        used_[size_t(s)] = std::max(used_[size_t(s)], block + 1);
         return vector_(s, block);
+    }
+
+    /// Leaves the vector with the blocks up to the last one used, which alone decide what was sampled.
+    void forgetUnused() {
+        for (int s = 0; s < kStreams; ++s) vector_.truncate(NumberStream(s), used_[size_t(s)]);
     }
 
 private:
     PrimaryVector& vector_;
     Random& random_;
+    std::array<int, kStreams> used_{};
 };
 
 }  // namespace ulam

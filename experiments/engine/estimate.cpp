@@ -5,7 +5,6 @@
 #include <limits>
 #include <map>
 #include <random>
-#include <ranges>
 #include <span>
 
 #include "core/base/file.h"
@@ -138,7 +137,7 @@ PlanEstimate estimatePlan(const Plan& plan, int threads) {
     for (std::size_t c = 0; c < plan.cells.size(); ++c)
         alike[{plan.cells[c].task.sampler, plan.cells[c].task.scene->name}].push_back(c);
     const double share = std::min(1.0, double(kTriedCells) / double(plan.cells.size()));
-    for (std::vector<std::size_t>& group : alike | std::views::values) {
+    for (auto& [kind, group] : alike) {
         // Random ones: regular steps might meet a single value of what is swept.
         std::shuffle(group.begin(), group.end(), std::mt19937_64(plan.seed));
         const auto tried = std::size_t(std::ceil(share * double(group.size())));

@@ -5,7 +5,6 @@
 #include <limits>
 #include <map>
 #include <numeric>
-#include <ranges>
 
 #include "core/base/error.h"
 #include "core/base/file.h"
@@ -170,7 +169,7 @@ TuningOutcome tune(const JsonDocument& experiment, const fs::path& file, const T
         for (const Failure& failure : ran.failures)
             if (failure.cell.empty()) fail(ExitCode::SomeCellsFailed, "tuning: the reference of {} failed: {}", failure.scene, failure.message);
         const auto found = scores(plan, own.runDir, left);
-        if (std::ranges::none_of(found | std::views::values, [](double score) { return std::isfinite(score); }))
+        if (std::ranges::none_of(found, [](const auto& entry) { return std::isfinite(entry.second); }))
             fail(ExitCode::SomeCellsFailed, "tuning: every candidate failed: {}", ran.failures.front().message);
         for (const auto& [candidate, score] : found) all[candidate]["scores"].push_back(numberOrNull(score));
         std::ranges::stable_sort(left, {}, [&](std::size_t c) { return found.at(c); });

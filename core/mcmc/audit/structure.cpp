@@ -31,6 +31,20 @@ std::vector<Block> scriptOf(RandomKey key, uint64_t trial) {
     return script;
 }
 
+/// Does the state hold numbers that its evaluation does not ask for? (Those it asks for are put back where they are cut.)
+bool holdsUnused(Target& target, const Sample& y, Random random) {
+    for (int s = 0; s < kStreams; ++s) {
+        const auto stream = NumberStream(s);
+        if (y.u.size(stream) == 0) continue;
+        Sample cut = y;
+        cut.u.truncate(stream, y.u.size(stream) - 1);
+        target.evaluateNumbers(cut, random);
+        // What is drawn anew may end the walk earlier, but not before it is asked for.
+        if (cut.u.size(stream) < y.u.size(stream)) return true;
+    }
+    return false;
+}
+
 bool sameFactors(const Scene& scene, const Sample& y) {
     Sample again;
     again.path = y.path;
@@ -101,7 +115,10 @@ private:
             p.y.technique = x.technique;
             if (target_->evaluateNumbers(p.y, first) != Reject::None) return;
         }
-        if (subject_.target() == Space::Primary) return;
+        if (subject_.target() == Space::Primary) {
+            check(!holdsUnused(*target_, p.y, first), "the state holds numbers that its evaluation does not use");
+            return;
+        }
         const auto violation = validate(target_->tracing(), scene_.limits, p.y.path, p.y.factors);
         if (violation)
             fail(*violation);

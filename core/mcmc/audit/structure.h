@@ -1,8 +1,8 @@
 #pragma once
 // Audit level L0: the structure of proposals. The same seed gives the same bits; the current state is untouched; a
 // proposed path passes the validator and its factors are those computed from scratch; nothing that is not finite is
-// accepted; a step ends with the old state or the proposal, whole, and what the kernel keeps with it. A quarter of the
-// trials use extreme random numbers.
+// accepted; a state holds just the numbers it is evaluated from; a step ends with the old state or the proposal, whole,
+// and what the kernel keeps with it. A quarter of the trials use extreme random numbers.
 
 #include "core/mcmc/audit/subject.h"
 
