@@ -232,14 +232,16 @@ private:
             }
         return true;
     }
-    /// Where no path comes about at all, there may be one.
+    /// Where no path comes about at all, there may be one. A long path of a rare shape does not come about by chance:
+    /// every other attempt draws only the numbers that are used together with the choice, and keeps the rest of the path.
     bool hasBranch(size_t n, double value, Random& random) {
         const std::vector<Block> original = numbers_;
         Path other;
         PathFactors unused;
         bool made = false, found = false;
         for (int attempt = 0; attempt < kTries && !found; ++attempt) {
-            for (size_t m = 0; m < 4 * original.size(); ++m)
+            const bool all = attempt % 2 != 0;
+            for (size_t m = all ? 0 : n - n % 4; m < (all ? 4 * original.size() : n - n % 4 + 4); ++m)
                 if (std::find(choices_.begin(), choices_.end(), m) == choices_.end()) number(m) = random();
             number(n) = value;
             for (size_t b = 0; b < kFurtherBlocks; ++b) numbers_.push_back(random.nextBlock());
