@@ -222,7 +222,7 @@ void ChainRun::settle() {
     bootstrap_ = WeightMoments(weights_);
     if (bootstrap_.mean > 0)
         seedChains();
-    else if (weights_.size() == bootstrapGoal_)  // and not stopped early
+    else if (!weights_.empty() && weights_.size() == bootstrapGoal_)  // and not stopped early
         fail(ExitCode::InvalidConfig, "none of {} bidirectional samples carried light to the camera: is the camera inside a wall, or the light shut off?",
              weights_.size());
     pilot_ = weights_ = {};
