@@ -19,7 +19,9 @@ public:
         void describe(V& v) {
             limits.describe(v);
             chains.describe(v);
-            v("mutations", mutations, {.help = "mutations by name, each with its weight and parameters (ulam list mutations)"});
+            v("mutations", mutations,
+              {.help = "mutations by name, each with its weight and parameters (ulam list mutations)",
+               .example = R"({"bidirectional": {}, "lens": {"weight": 2}})"});
         }
     };
     explicit Mlt(const Parameters& p) : parameters_(p), importance_(makeImportance(p.chains.target)) {

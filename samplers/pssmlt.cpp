@@ -25,7 +25,9 @@ public:
             v("base", base, {.help = "what a primary sample makes", .choices = {"bdpt", "path"}});
             v("deposit", deposit, {.help = "kelemen: large steps also count as independent samples; expected_values: acceptance-weighted deposits",
                                    .choices = {"kelemen", "expected_values"}});
-            v("mutations", mutations, {.help = "mutations by name, each with its weight and parameters (ulam list mutations)"});
+            v("mutations", mutations,
+              {.help = "mutations by name, each with its weight and parameters (ulam list mutations)",
+               .example = R"({"large_step": {"weight": 0.3}, "kelemen_step": {"weight": 0.7}})"});
         }
     };
     explicit Pssmlt(const Parameters& p) : parameters_(p), importance_(makeImportance(p.chains.target)) {

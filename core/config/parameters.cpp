@@ -151,7 +151,8 @@ ParameterInfo infoOf(const ParameterList::Parameter& parameter) {
             notes.help,
             notes.choices,
             limitOf(parameter.member, false),
-            limitOf(parameter.member, true)};
+            limitOf(parameter.member, true),
+            notes.example ? Json::parse(notes.example) : valueOf(parameter.member)};
 }
 
 Json schemaOf(const ParameterInfo& info) {
@@ -166,10 +167,12 @@ Json schemaOf(const ParameterInfo& info) {
     } else if (info.type == "spectrum") {
         const Json triple = {{"type", "array"}, {"items", number}, {"minItems", 3}, {"maxItems", 3}};
         const Json plain = Json::array({number, triple});
-        const Json rgb = {{"type", "object"},
-                          {"properties", {{"type", {{"const", "rgb"}}}, {"value", {{"anyOf", plain}}}}},
-                          {"required", Json::array({"type", "value"})},
-                          {"additionalProperties", false}};
+        const Json rgb = {
+            {"type", "object"},
+            {"properties",
+             {{"type", {{"const", "rgb"}}}, {"value", {{"anyOf", plain}, {"examples", Json::array({info.example})}}}}},
+            {"required", Json::array({"type", "value"})},
+            {"additionalProperties", false}};
         schema["anyOf"] = Json::array({number, triple, rgb});
     } else if (info.type == "number" || info.type == "integer") {
         schema = number;
@@ -179,6 +182,7 @@ Json schemaOf(const ParameterInfo& info) {
     }
     schema["description"] = info.unit.empty() ? info.help : fmt::format("{} [{}]", info.help, info.unit);
     if (!info.defaultValue.is_null()) schema["default"] = info.defaultValue;
+    if (!info.example.is_null()) schema["examples"] = Json::array({info.example});
     return schema;
 }
 
@@ -200,9 +204,11 @@ std::vector<ParameterInfo> ParameterList::info() const {
         if (std::any_of(result.begin(), result.end(), sameName))
             fail(ExitCode::InvalidConfig, "parameter {} is described twice", inQuotes(info.name));
         try {
-            if (info.type != "json") std::visit(Reader{JsonNode(info.defaultValue), info}, parameter.member);
+            if (info.type != "json")
+                for (const Json& value : {info.example, info.defaultValue})
+                    std::visit(Reader{JsonNode(value), info}, parameter.member);
         } catch (const Error& error) {
-            fail(ExitCode::InvalidConfig, "the default of parameter {} breaks its own description: {}",
+            fail(ExitCode::InvalidConfig, "the default or example of parameter {} breaks its own description: {}",
                  inQuotes(info.name), error.what());
         }
         result.push_back(info);

@@ -33,6 +33,7 @@ struct ParameterNotes {
     bool minExclusive = false;
     bool maxExclusive = false;
     std::vector<std::string> choices = {};  // of a string; empty: any
+    const char* example = nullptr;          // JSON text, where the default is none or says little
 };
 
 /// One parameter as users see it.
@@ -48,6 +49,7 @@ struct ParameterInfo {
     std::string help;
     std::vector<std::string> choices;
     Json lowest, highest;  ///< that the type of an integer holds
+    Json example;          ///< a value that can be written: the default where nothing else is said; null: none
 
     /// "0 < x <= 1000000", "balance | power"; empty where anything goes.
     std::string range() const;

@@ -41,7 +41,7 @@ public:
         const PathLimits& limits = options_.limits;
         const TechniqueSet& set = options_.techniques;
         walkFromLight(tracing_, limits, set.walkFromLight() ? limits.maxDepth : 0, numbers, light_);
-        walkFromCamera(tracing_, limits, set.hitLight || set.nextEvent || set.connect ? limits.maxDepth + 1 : 1, raster, numbers, camera_);
+        walkFromCamera(tracing_, limits, set.walkFromCamera() ? limits.maxDepth + 1 : 1, raster, numbers, camera_);
 
         auto report = [&](int s, int t, const Vec2f& where) {
             const double w = connection_.densities.weight(s, set, options_.heuristic);

@@ -18,6 +18,7 @@ struct TechniqueSet {
     bool connect = true;        ///< s ≥ 2, t ≥ 2
     bool lightImage = true;     ///< t = 1
     bool walkFromLight() const { return connect || lightImage; }
+    bool walkFromCamera() const { return hitLight || nextEvent || connect; }  ///< beyond the lens
     bool contains(int s, int t) const {
         if (t == 1) return lightImage && s >= 1;
         return s == 0 ? hitLight : s == 1 ? nextEvent : connect;

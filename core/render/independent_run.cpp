@@ -178,8 +178,7 @@ void IndependentRun::report(uint64_t units, RenderStatistics& statistics) {
     statistics.samples = units;
     const uint64_t pixels = uint64_t(order_.pixels());
     const TechniqueSet& techniques = workers_[0]->source->options().techniques;
-    if (techniques.hitLight || techniques.nextEvent || techniques.connect)
-        statistics.unsampledPixels = pixels - std::min(units, pixels);
+    if (techniques.walkFromCamera()) statistics.unsampledPixels = pixels - std::min(units, pixels);
     statistics.rays = rays();
     const Worker& all = gathered();
     statistics.nonFinite = all.nonFinite;

@@ -10,6 +10,10 @@
 namespace ulam {
 namespace {
 
+Json identifier() {
+    return {{"type", "string"}, {"description", "name that a ref may refer to"}, {"examples", Json::array({"white"})}};
+}
+
 std::vector<PluginInfo> generators() {
     std::vector<PluginInfo> result;
     for (const auto* entry : Registry<Generator>::instance().entries())
@@ -23,10 +27,12 @@ Json pluginSchema(const PluginInfo& plugin, bool open) {
     schema["description"] = plugin.summary;
     for (const std::string& name : plugin.textured) {
         Json& plain = schema["properties"][name];
-        plain = {{"anyOf", Json::array({plain, {{"$ref", "#/definitions/plugin"}}})}, {"description", plain["description"]}};
+        plain = {{"anyOf", Json::array({plain, {{"$ref", "#/definitions/plugin"}}})},
+                 {"description", plain["description"]},
+                 {"examples", plain["examples"]}};
     }
     schema["properties"]["type"] = {{"const", plugin.name}};
-    schema["properties"]["id"] = {{"type", "string"}};
+    schema["properties"]["id"] = identifier();
     schema["required"] = Json::array({"type"});
     if (open) schema["additionalProperties"] = {{"$ref", "#/definitions/plugin"}};
     return schema;
@@ -62,17 +68,26 @@ Json sceneSchema() {
          {PluginKind::Shapes, PluginKind::Bsdfs, PluginKind::Emitters, PluginKind::Sensors, PluginKind::Textures, PluginKind::Films})
         for (const PluginInfo& plugin : scenePlugins(kind)) plugins.push_back(pluginSchema(plugin, true));
     plugins.push_back({{"type", "object"},
-                       {"properties", {{"type", {{"const", "ref"}}}, {"id", {{"type", "string"}}}}},
+                       {"properties", {{"type", {{"const", "ref"}}}, {"id", identifier()}}},
                        {"required", Json::array({"type", "id"})},
                        {"additionalProperties", false}});
     const Json scene = {{"type", "object"},
                         {"description", "a dictionary of shapes, BSDFs, emitters and one sensor"},
                         {"properties",
                          {{"type", {{"const", "scene"}}},
-                          {"id", {{"type", "string"}}},
-                          {"$schema", {{"type", "string"}}},
-                          {"integrator", {{"type", "object"}}},
-                          {"sampler", {{"type", "object"}}}}},
+                          {"id", identifier()},
+                          {"$schema",
+                           {{"type", "string"},
+                            {"description", "JSON Schema for editors; not read"},
+                            {"examples", Json::array({"scene.schema.json"})}}},
+                          {"integrator",
+                           {{"type", "object"},
+                            {"description", "of Mitsuba's own; not read"},
+                            {"examples", Json::array({Json{{"type", "path"}}})}}},
+                          {"sampler",
+                           {{"type", "object"},
+                            {"description", "of Mitsuba's own; not read"},
+                            {"examples", Json::array({Json{{"type", "independent"}}})}}}}},
                         {"required", Json::array({"type"})},
                         {"additionalProperties", {{"$ref", "#/definitions/plugin"}}}};
     Json alternatives = Json::array({scene});

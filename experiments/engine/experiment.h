@@ -19,10 +19,12 @@ struct BudgetParameters {
 
     template <class V>
     void describe(V& v) {
-        v("time", time, {.help = "wall time of the render phase, seeding included", .unit = "seconds", .min = 0});
-        v("spp", spp, {.help = "samples per pixel (of chains: mutations per pixel)", .min = 0});
-        v("mutations", mutations, {.help = "mutations of all chains; for samplers with chains only", .min = 0});
-        v("rays", rays, {.help = "rays traced", .min = 0});
+        v("time", time,
+          {.help = "wall time of the render phase, seeding included", .unit = "seconds", .min = 0, .example = "10"});
+        v("spp", spp, {.help = "samples per pixel (of chains: mutations per pixel)", .min = 0, .example = "64"});
+        v("mutations", mutations,
+          {.help = "mutations of all chains; for samplers with chains only", .min = 0, .example = "1000000"});
+        v("rays", rays, {.help = "rays traced", .min = 0, .example = "10000000"});
     }
 };
 
@@ -34,13 +36,16 @@ struct ReferenceParameters {
     template <class V>
     void describe(V& v) {
         v("sampler", sampler,
-          {.help = "sampler that makes the reference: a registered name, a name in samplers, or parameters"});
-        v("budget", budget, {.help = "of all replicates of the reference together"});
+          {.help = "sampler that makes the reference: a registered name, a name in samplers, or parameters",
+           .example = R"("bdpt")"});
+        v("budget", budget, {.help = "of all replicates of the reference together", .example = R"({"spp": 16384})"});
         v("replicates", replicates,
           {.help = "independent runs, half of them in each of two halves that must agree", .min = 4, .max = 1024});
-        v("image", image, {.help = "EXR file to take instead, relative to the experiment"});
+        v("image", image,
+          {.help = "EXR file to take instead, relative to the experiment", .example = R"("references/plate.exr")"});
         v("variance", variance,
-          {.help = "EXR file with the variance of that image's pixels; NAME.variance.exr where not given"});
+          {.help = "EXR file with the variance of that image's pixels; NAME.variance.exr where not given",
+           .example = R"("references/plate.variance.exr")"});
     }
 };
 
@@ -66,7 +71,9 @@ struct TuneParameters {
 
     template <class V>
     void describe(V& v) {
-        v("sweep", sweep, {.help = "the candidates: values of parameters of one sampler, as in the experiment's sweep"});
+        v("sweep", sweep,
+          {.help = "the candidates: values of parameters of one sampler, as in the experiment's sweep",
+           .example = R"({"samplers.mlt.mutations.lens.weight": [0.5, 1, 2]})"});
         v("reduction", reduction, {.help = "after each round the best 1 / reduction go on, with that many times the budget", .min = 2, .max = 16});
         v("replicates", replicates, {.help = "runs of each candidate on each scene in a round", .min = 1, .max = 1000});
     }
@@ -89,20 +96,31 @@ struct ExperimentParameters {
 
     template <class V>
     void describe(V& v) {
-        v("$schema", schema, {.help = "JSON Schema for editors; not read"});
-        v("name", name, {.help = "of the run; that of the file where not given"});
-        v("extends", extends, {.help = "file, or list of files, in the same folder that this one adds to and changes"});
-        v("scene", scene, {.help = "the only scene: a dictionary, a generator, or a file relative to the experiment"});
-        v("scenes", scenes, {.help = "scenes by name, each as under scene"});
-        v("film", film, {.help = "width, height, crop_* and rfilter, for all scenes"});
+        v("$schema", schema, {.help = "JSON Schema for editors; not read", .example = R"("experiment.schema.json")"});
+        v("name", name, {.help = "of the run; that of the file where not given", .example = R"("holes")"});
+        v("extends", extends,
+          {.help = "file, or list of files, in the same folder that this one adds to and changes",
+           .example = R"("base.json")"});
+        v("scene", scene,
+          {.help = "the only scene: a dictionary, a generator, or a file relative to the experiment",
+           .example = R"({"type": "grid_of_holes", "open_area": 0.001})"});
+        v("scenes", scenes,
+          {.help = "scenes by name, each as under scene",
+           .example = R"({"plate": {"type": "grid_of_holes"}, "box": "scenes/box.json"})"});
+        v("film", film,
+          {.help = "width, height, crop_* and rfilter, for all scenes", .example = R"({"width": 320, "height": 180})"});
         v("max_depth", maxDepth,
           {.help = "longest path in edges, for all samplers and the reference; 1 = emitters seen directly", .min = 1});
-        v("samplers", samplers, {.help = "samplers by name, each with its type and parameters"});
-        v("baseline", baseline, {.help = "sampler that the others are compared with; none: no comparisons"});
-        v("budget", budget, {.help = "what each replicate may spend"});
+        v("samplers", samplers,
+          {.help = "samplers by name, each with its type and parameters",
+           .example = R"({"mlt": {"type": "mlt", "chains": 100}, "bdpt": {"type": "bdpt"}})"});
+        v("baseline", baseline,
+          {.help = "sampler that the others are compared with; none: no comparisons", .example = R"("bdpt")"});
+        v("budget", budget, {.help = "what each replicate may spend", .example = R"({"time": 10})"});
         v("replicates", replicates, {.help = "independent runs of each sampler on each scene", .min = 1, .max = 10000});
         v("until", until,
-          {.help = "add replicates until every comparison is decided, or its ratio is known to \"relative_ci\""});
+          {.help = "add replicates until every comparison is decided, or its ratio is known to \"relative_ci\"",
+           .example = R"({"relative_ci": 0.05, "max_replicates": 128})"});
         v("seed", seed, {.help = "master seed"});
         v("common_random_numbers", commonRandomNumbers,
           {.help = "replicates of one number share their random numbers in all cells; comparisons are then of pairs"});
@@ -110,9 +128,14 @@ struct ExperimentParameters {
           {.help = "images at 1/2, 1/4, ... of the budget, for convergence", .min = 0, .max = 20});
         v("metrics", metrics, {.help = "error metrics; the first is primary and carries the verdict"});
         v("reference", reference,
-          {.help = "\"truth\", an EXR file, or a sampler with its budget; or each of these by scene"});
-        v("tune", tune, {.help = "choose a sampler's parameters by successive halving before it is compared"});
-        v("sweep", sweep, {.help = "values by path into the experiment; several paths make a grid"});
+          {.help = "\"truth\", an EXR file, or a sampler with its budget; or each of these by scene",
+           .example = R"({"sampler": "bdpt", "budget": {"spp": 16384}})"});
+        v("tune", tune,
+          {.help = "choose a sampler's parameters by successive halving before it is compared",
+           .example = R"({"sweep": {"samplers.mlt.chains": [10, 100, 1000]}})"});
+        v("sweep", sweep,
+          {.help = "values by path into the experiment; several paths make a grid",
+           .example = R"({"scene.open_area": {"log": [0.0001, 0.1], "steps": 4}})"});
     }
 };
 

@@ -11,10 +11,11 @@
 namespace ulam {
 namespace {
 
-/// `schema` in place of the free form of a property, whose description stays.
+/// `schema` in place of the free form of a property, whose description and example stay.
 void refine(Json& object, const char* property, Json schema) {
     Json& place = object["properties"][property];
-    if (place.contains("description")) schema["description"] = place["description"];
+    for (const char* kept : {"description", "examples"})
+        if (place.contains(kept)) schema[kept] = place[kept];
     place = std::move(schema);
 }
 
@@ -62,12 +63,22 @@ Json mixSchema(const std::string& sampler) {
     for (const auto* entry : Registry<Mutation>::instance().entries()) {
         if (!accepts(sampler, entry->name)) continue;
         Json schema = pluginSchema(*entry);
-        schema["properties"]["weight"] = {{"type", "number"}, {"minimum", 0}, {"maximum", 1e9}, {"default", 1}, {"description", "relative probability of being chosen"}};
+        schema["properties"]["weight"] = {{"type", "number"},
+                                          {"minimum", 0},
+                                          {"maximum", 1e9},
+                                          {"default", 1},
+                                          {"examples", Json::array({1})},
+                                          {"description", "relative probability of being chosen"}};
         typed.push_back(schema);
         schema.erase("required");
         own[entry->name] = schema;
     }
-    for (auto& schema : own) schema = anyOf({schema, {{"anyOf", typed}}});
+    for (auto& schema : own) {
+        const Json summary = schema["description"];
+        schema = anyOf({schema, {{"anyOf", typed}}});
+        schema["description"] = summary;
+        schema["examples"] = Json::array({Json{{"weight", 1}}});
+    }
     Json mix = membersLike({{"anyOf", typed}});
     mix["properties"] = own;
     return mix;
@@ -125,14 +136,26 @@ Json sweepValuesSchema() {
     for (const bool logarithmic : {false, true})
         for (const bool drawn : {false, true}) {
             const char *scale = logarithmic ? "log" : "linear", *number = drawn ? "draws" : "steps";
-            Json end = {{"type", "number"}};
+            Json end = {{"type", "number"}}, ends = Json::array({1, 1000});
             if (logarithmic) end["exclusiveMinimum"] = 0;
-            forms.push_back({{"type", "object"},
-                             {"properties",
-                              {{scale, {{"type", "array"}, {"items", end}, {"minItems", 2}, {"maxItems", 2}, {"description", "first and last value"}}},
-                               {number, {{"type", "integer"}, {"minimum", drawn ? 1 : 2}, {"maximum", kMostSweepValues}, {"description", drawn ? "how many random values" : "how many values, the ends included"}}}}},
-                             {"required", {scale, number}},
-                             {"additionalProperties", false}});
+            forms.push_back(
+                {{"type", "object"},
+                 {"properties",
+                  {{scale,
+                    {{"type", "array"},
+                     {"items", end},
+                     {"minItems", 2},
+                     {"maxItems", 2},
+                     {"description", "first and last value"},
+                     {"examples", Json::array({ends})}}},
+                   {number,
+                    {{"type", "integer"},
+                     {"minimum", drawn ? 1 : 2},
+                     {"maximum", kMostSweepValues},
+                     {"description", drawn ? "how many random values" : "how many values, the ends included"},
+                     {"examples", Json::array({4})}}}}},
+                 {"required", {scale, number}},
+                 {"additionalProperties", false}});
         }
     return {{"anyOf", forms}};
 }
@@ -140,14 +163,23 @@ Json sweepValuesSchema() {
 /// Of the points that are run (sweep_filter.h).
 Json conditions() {
     const Json text = {{"type", "string"}}, single = {{"type", {"number", "string", "boolean"}}};
-    const Json path = {{"type", "object"}, {"properties", {{"path", text}}}, {"required", Json::array({"path"})}, {"additionalProperties", false}};
+    const Json path = {{"type", "object"},
+                       {"properties",
+                        {{"path",
+                          {{"type", "string"},
+                           {"description", "whose value at the point is compared with"},
+                           {"examples", Json::array({"samplers.mlt.chains"})}}}}},
+                       {"required", Json::array({"path"})},
+                       {"additionalProperties", false}};
     const auto condition = [&](Json comparison, Json value) -> Json {
         return {{"type", "array"}, {"items", Json::array({text, std::move(comparison), std::move(value)})}, {"minItems", 3}, {"maxItems", 3}};
     };
     const Json order = {{"enum", {"<", "<=", ">", ">=", "==", "!="}}}, among = {{"const", "in"}};
     return {{"type", "array"},
             {"description", "conditions [path, comparison, value] that a point must meet to be run"},
-            {"items", anyOf({condition(order, anyOf({single, path})), condition(among, {{"type", "array"}, {"items", single}, {"minItems", 1}})})}};
+            {"examples", Json::array({Json::array({Json::array({"max_depth", ">", 2})})})},
+            {"items", anyOf({condition(order, anyOf({single, path})),
+                             condition(among, {{"type", "array"}, {"items", single}, {"minItems", 1}})})}};
 }
 
 }  // namespace
@@ -198,8 +230,11 @@ Json experimentSchema() {
     Json byScene = namedLike(reference("reference"));
     byScene["not"] = anyOf({{{"required", Json::array({"sampler"})}}, {{"required", Json::array({"budget"})}}, {{"required", Json::array({"image"})}}});
     refine(schema, "reference", anyOf({reference("reference"), byScene}));
+    Json zip = membersLike(reference("sweepValues"));
+    zip["description"] = "paths whose values go together, the first with the first: no grid";
+    zip["examples"] = Json::array({Json{{"max_depth", {2, 4, 8}}, {"budget.time", {1, 2, 4}}}});
     definitions["sweep"] = {{"type", "object"},
-                            {"properties", {{"zip", membersLike(reference("sweepValues"))}, {"where", conditions()}}},
+                            {"properties", {{"zip", zip}, {"where", conditions()}}},
                             {"additionalProperties", reference("sweepValues")}};
     refine(schema, "sweep", reference("sweep"));
     Json tune = jsonSchema(parameterInfo<TuneParameters>());

@@ -57,7 +57,7 @@ def candidates(schema):
         if bound in schema:
             limit = int(schema[bound]) if float(schema[bound]).is_integer() else schema[bound]
             values += [limit, limit - 1, limit + 1]
-    return values + schema.get("enum", []) + ([schema["default"]] if "default" in schema else [])
+    return values + schema.get("enum", []) + ([schema["default"]] if "default" in schema else []) + schema.get("examples", [])
 
 
 def experiments(schema):
@@ -111,7 +111,34 @@ def experiments(schema):
     return list(once.values())
 
 
+def described(schema, name=""):
+    """Every key that the schema knows, with what it says of it."""
+    if isinstance(schema, dict):
+        for key, value in schema.get("properties", {}).items():
+            yield f"{name}/{key}", value
+        for key, value in schema.items():
+            if key not in ("default", "examples"):
+                yield from described(value, f"{name}/{key}")
+    elif isinstance(schema, list):
+        for i, value in enumerate(schema):
+            yield from described(value, f"{name}/{i}")
+
+
 class Schema(unittest.TestCase):
+    def test_every_key_has_a_meaning_and_an_example_that_holds(self):
+        schema = json.loads(subprocess.check_output([ULAM, "schema", "experiment"]))
+        keys = 0
+        for name, said in described(schema):
+            if "const" in said or name.endswith("/type") or name.endswith("/value"):
+                continue  # the one value it has, or the part of a colour
+            with self.subTest(name):
+                keys += 1
+                self.assertIn("description", said)
+                self.assertTrue(said.get("examples"))
+                for example in said["examples"]:
+                    jsonschema.Draft7Validator({**said, "definitions": schema["definitions"]}).validate(example)
+        self.assertGreater(keys, 500)
+
     def test_the_schema_and_the_program_agree(self):
         schema = json.loads(subprocess.check_output([ULAM, "schema", "experiment"]))
         jsonschema.Draft7Validator.check_schema(schema)

@@ -34,7 +34,8 @@ struct MixtureParameters {
     template <class V>
     void describe(V& v) {
         v("weights", weights,
-          {.help = "one number a nested BSDF, in order, with a sum of at most 1; the rest is absorbed"});
+          {.help = "one number a nested BSDF, in order, with a sum of at most 1; the rest is absorbed",
+           .example = "[0.5, 0.3]"});
     }
 };
 
@@ -90,7 +91,8 @@ struct NormalmapParameters : ReliefParameters {
         ReliefParameters::describe(v);
         v("normalmap", normalmap,
           {.help = "texture (set its \"raw\") of normals n as colours (n + 1) / 2, in the frame of the shading normal "
-                   "(blue) and the direction of growing u (red)"});
+                   "(blue) and the direction of growing u (red)",
+           .example = R"({"type": "bitmap", "filename": "textures/bumps.png", "raw": true})"});
     }
 };
 

@@ -14,8 +14,10 @@ struct PointParameters : PointEmitter::Parameters {
     template <class V>
     void describe(V& v) {
         PointEmitter::Parameters::describe(v);
-        v("position", position, {.help = "place [x,y,z]; instead of to_world"});
-        v("to_world", toWorld, {.help = "moves the origin to the light's place"});
+        v("position", position, {.help = "place [x,y,z]; instead of to_world", .example = "[0, 2, 0]"});
+        v("to_world", toWorld,
+          {.help = "moves the origin to the light's place",
+           .example = R"([{"type": "translate", "value": [0, 1, 0]}])"});
     }
 };
 
@@ -24,7 +26,9 @@ struct SpotParameters : SpotEmitter::Parameters {
     template <class V>
     void describe(V& v) {
         SpotEmitter::Parameters::describe(v);
-        v("to_world", toWorld, {.help = "moves the light from the origin, where it shines along +z"});
+        v("to_world", toWorld,
+          {.help = "moves the light from the origin, where it shines along +z",
+           .example = R"([{"type": "lookat", "origin": [0, 1, 4], "target": [0, 1, 0], "up": [0, 1, 0]}])"});
     }
 };
 
@@ -33,8 +37,11 @@ struct DirectionalParameters : DirectionalEmitter::Parameters {
     template <class V>
     void describe(V& v) {
         DirectionalEmitter::Parameters::describe(v);
-        v("direction", direction, {.help = "in which the light travels [x,y,z]; instead of to_world"});
-        v("to_world", toWorld, {.help = "turns the light, which travels along +z"});
+        v("direction", direction,
+          {.help = "in which the light travels [x,y,z]; instead of to_world", .example = "[0, -1, 0]"});
+        v("to_world", toWorld,
+          {.help = "turns the light, which travels along +z",
+           .example = R"([{"type": "rotate", "axis": [1, 0, 0], "angle": 90}])"});
     }
 };
 
@@ -43,10 +50,14 @@ struct EnvmapParameters : EnvmapEmitter::Parameters {
     std::string mapping = "latlong";
     template <class V>
     void describe(V& v) {
-        v("filename", filename, {.help = "picture of all directions, relative to the scene's folder and inside it"});
+        v("filename", filename,
+          {.help = "picture of all directions, relative to the scene's folder and inside it",
+           .example = R"("textures/sky.exr")"});
         v("mapping", mapping, {.help = "latitude and longitude, or the square of an octahedron with equal areas, its middle at +z (pbrt-v4)", .choices = {"latlong", "octahedral"}});
         EnvmapEmitter::Parameters::describe(v);
-        v("to_world", toWorld, {.help = "turns the picture; its zenith is +y"});
+        v("to_world", toWorld,
+          {.help = "turns the picture; its zenith is +y",
+           .example = R"([{"type": "rotate", "axis": [0, 1, 0], "angle": 90}])"});
     }
 };
 

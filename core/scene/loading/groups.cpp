@@ -12,7 +12,9 @@ struct InstanceParameters {
     JsonNode toWorld;
     template <class V>
     void describe(V& v) {
-        v("to_world", toWorld, {.help = "group to world: a matrix or a list of steps"});
+        v("to_world", toWorld,
+          {.help = "group to world: a matrix or a list of steps",
+           .example = R"([{"type": "translate", "value": [0, 1, 0]}])"});
     }
 };
 

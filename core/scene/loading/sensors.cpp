@@ -18,7 +18,9 @@ struct PerspectiveParameters : Perspective::Parameters {
     void describe(V& v) {
         Perspective::Parameters::describe(v);
         v("focal_length", focalLength, {.help = "on 35 mm film, its diagonal seen in full: a number followed by mm"});
-        v("to_world", toWorld, {.help = "camera to world, without scale: a matrix or a list of steps"});
+        v("to_world", toWorld,
+          {.help = "camera to world, without scale: a matrix or a list of steps",
+           .example = R"([{"type": "lookat", "origin": [0, 1, 4], "target": [0, 1, 0], "up": [0, 1, 0]}])"});
     }
 };
 

@@ -16,7 +16,10 @@ struct PlacementParameters {
     bool flipNormals = false;
     template <class V>
     void describe(V& v) {
-        v("to_world", toWorld, {.help = "object to world: a matrix or a list of steps"});
+        v("to_world", toWorld,
+          {.help = "object to world: a matrix or a list of steps",
+           .example =
+               R"([{"type": "rotate", "axis": [0, 1, 0], "angle": 30}, {"type": "translate", "value": [0, 1, 0]}])"});
         v("flip_normals", flipNormals, {.help = "turn the normals around"});
     }
 };
@@ -26,7 +29,7 @@ struct SphereParameters : PlacementParameters {
     double radius = 1;
     template <class V>
     void describe(V& v) {
-        v("center", center, {.help = "centre [x,y,z], before to_world; default the origin"});
+        v("center", center, {.help = "centre [x,y,z], before to_world; default the origin", .example = "[0, 1, 0]"});
         v("radius", radius, {.help = "radius, before to_world", .min = 0, .minExclusive = true});
         PlacementParameters::describe(v);
     }
@@ -37,8 +40,9 @@ struct CylinderParameters : PlacementParameters {
     double radius = 1;
     template <class V>
     void describe(V& v) {
-        v("p0", p0, {.help = "middle of one end [x,y,z], before to_world; default the origin"});
-        v("p1", p1, {.help = "middle of the other end; default [0,0,1]"});
+        v("p0", p0,
+          {.help = "middle of one end [x,y,z], before to_world; default the origin", .example = "[0, -1, 0]"});
+        v("p1", p1, {.help = "middle of the other end; default [0,0,1]", .example = "[0, 1, 0]"});
         v("radius", radius, {.help = "radius, before to_world", .min = 0, .minExclusive = true});
         PlacementParameters::describe(v);
     }
@@ -49,7 +53,8 @@ struct FileParameters : PlacementParameters {
     bool faceNormals = false;
     template <class V>
     void describe(V& v) {
-        v("filename", filename, {.help = "file, relative to the scene's folder and inside it"});
+        v("filename", filename,
+          {.help = "file, relative to the scene's folder and inside it", .example = R"("meshes/bunny.ply")"});
         v("face_normals", faceNormals,
           {.help = "flat shading; else normals of the file, or smooth ones if it has none"});
         PlacementParameters::describe(v);
@@ -78,11 +83,15 @@ struct MeshParameters {
     JsonNode positions, triangles, normals, texcoords;
     template <class V>
     void describe(V& v) {
-        v("positions", positions, {.help = "vertices x, y, z one after another, in world space"});
+        v("positions", positions,
+          {.help = "vertices x, y, z one after another, in world space", .example = "[0, 0, 0, 1, 0, 0, 0, 1, 0]"});
         v("triangles", triangles,
-          {.help = "three vertex numbers a triangle, counted from 0, counter-clockwise seen from outside"});
-        v("normals", normals, {.help = "x, y, z a vertex; none: flat shading"});
-        v("texcoords", texcoords, {.help = "u, v a vertex; none: barycentric coordinates"});
+          {.help = "three vertex numbers a triangle, counted from 0, counter-clockwise seen from outside",
+           .example = "[0, 1, 2]"});
+        v("normals", normals,
+          {.help = "x, y, z a vertex; none: flat shading", .example = "[0, 0, 1, 0, 0, 1, 0, 0, 1]"});
+        v("texcoords", texcoords,
+          {.help = "u, v a vertex; none: barycentric coordinates", .example = "[0, 0, 1, 0, 0, 1]"});
     }
 };
 

@@ -21,7 +21,8 @@ struct SunskyParameters {
     void describe(V& v) {
         v("turbidity", turbidity, {.help = "haze: 2 is arctic air, 3 a clear sky in a temperate climate, 10 a humid day", .min = 1, .max = 10});
         v("albedo", albedo, {.help = "of the ground, which lights the sky from below", .min = 0, .max = 1});
-        v("sun_direction", sunDirection, {.help = "to the sun, in the world [x,y,z]; instead of place and time"});
+        v("sun_direction", sunDirection,
+          {.help = "to the sun, in the world [x,y,z]; instead of place and time", .example = "[0.3, 0.5, 0.8]"});
         v("latitude", when.latitude, {.help = "north of the equator", .unit = "degrees", .min = -90, .max = 90});
         v("longitude", when.longitude, {.help = "east of Greenwich", .unit = "degrees", .min = -360, .max = 360});
         v("timezone", when.timezone, {.help = "ahead of Greenwich", .unit = "hours", .min = -24, .max = 24});
@@ -35,7 +36,9 @@ struct SunskyParameters {
         v("sun_scale", sunScale, {.help = "factor on the sun's radiance; 0: none", .min = 0});
         v("sun_aperture", sunAperture, {.help = "the angle under which the sun is seen; does not change its power", .unit = "degrees", .min = 0.01, .max = 90});
         v("complex_sun", complexSun, {.help = "darker towards its rim; not supported"});
-        v("to_world", toWorld, {.help = "turns the sky; its zenith is +z, south is +x, west is +y"});
+        v("to_world", toWorld,
+          {.help = "turns the sky; its zenith is +z, south is +x, west is +y",
+           .example = R"([{"type": "rotate", "axis": [1, 0, 0], "angle": -90}])"});
     }
 };
 

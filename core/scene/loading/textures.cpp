@@ -11,7 +11,7 @@ struct RgbParameters {
     JsonNode value;
     template <class V>
     void describe(V& v) {
-        v("value", value, {.help = "a number or [r,g,b], linear Rec. 709"});
+        v("value", value, {.help = "a number or [r,g,b], linear Rec. 709", .example = "[0.8, 0.4, 0.2]"});
     }
 };
 
@@ -22,7 +22,9 @@ struct Placed : P {
     template <class V>
     void describe(V& v) {
         P::describe(v);
-        v("to_uv", toUv, {.help = "surface parameters to texture coordinates: a matrix or a list of steps"});
+        v("to_uv", toUv,
+          {.help = "surface parameters to texture coordinates: a matrix or a list of steps",
+           .example = R"([{"type": "scale", "value": [4, 4, 1]}])"});
     }
 };
 
@@ -32,7 +34,9 @@ struct BitmapParameters : Placed<BitmapTexture::Parameters> {
     bool invert = false;
     template <class V>
     void describe(V& v) {
-        v("filename", filename, {.help = "exr, hdr, pfm, png, jpg or tga file, relative to the scene's folder and inside it"});
+        v("filename", filename,
+          {.help = "exr, hdr, pfm, png, jpg or tga file, relative to the scene's folder and inside it",
+           .example = R"("textures/wood.png")"});
         Placed::describe(v);
         v("scale", scale, {.help = "factor on the picture", .min = 0});
         v("invert", invert, {.help = "1 minus the scaled picture, at least 0"});

@@ -180,7 +180,7 @@ TEST_CASE("the JSON Schema says the same as the description", "[parameters]") {
     const Json& properties = schema["properties"];
     CHECK(properties.size() == 12);
     CHECK(properties["radius"] == Json::parse(R"({"type": "number", "exclusiveMinimum": 0.0, "maximum": 100.0,
-                                                  "description": "smallest jump [pixels]", "default": 0.1})"));
+                                                  "description": "smallest jump [pixels]", "default": 0.1, "examples": [0.1]})"));
     CHECK(properties["exponent"]["exclusiveMaximum"] == 1.0);
     CHECK(properties["chains"]["type"] == "integer");
     CHECK(properties["adapt"]["type"] == "boolean");
@@ -212,11 +212,38 @@ struct DefaultOutOfRange {
     }
 };
 
+struct WithExample {
+    double rate = 0.5;
+    JsonNode steps;
+    template <class V>
+    void describe(V& v) {
+        v("rate", rate, {.help = "of large steps"});
+        v("steps", steps, {.help = "one after another", .example = R"([{"type": "scale", "value": 2}])"});
+    }
+};
+
+struct ExampleOutOfRange {
+    double rate = 0.5;
+    template <class V>
+    void describe(V& v) {
+        v("rate", rate, {.help = "of large steps", .min = 0, .max = 1, .example = "2"});
+    }
+};
+
 }  // namespace
+
+TEST_CASE("an example is the default, or what a description says instead", "[parameters]") {
+    const Json schema = jsonSchema(parameterInfo<WithExample>());
+    CHECK(schema["properties"]["rate"]["examples"] == Json::parse("[0.5]"));
+    CHECK(schema["properties"]["steps"]["examples"] == Json::parse(R"([[{"type": "scale", "value": 2}]])"));
+}
 
 TEST_CASE("mistakes in a description are found", "[parameters]") {
     CHECK(errorOf([] { parameterInfo<DescribedTwice>(); }).message == "parameter \"a\" is described twice");
-    CHECK(errorOf([] {
-              parameterInfo<DefaultOutOfRange>();
-          }).has("the default of parameter \"rate\" breaks its own description: expected a number, 0 <= x <= 1"));
+    CHECK(errorOf([] { parameterInfo<DefaultOutOfRange>(); })
+              .has("the default or example of parameter \"rate\" breaks its own description: expected a number, 0 <= x "
+                   "<= 1"));
+    CHECK(errorOf([] { parameterInfo<ExampleOutOfRange>(); })
+              .has("the default or example of parameter \"rate\" breaks its own description: expected a number, 0 <= x "
+                   "<= 1"));
 }

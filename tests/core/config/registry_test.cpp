@@ -127,5 +127,5 @@ TEST_CASE("a broken registration is reported at the first use", "[registry]") {
     CHECK_NOTHROW(Registration<Plant, Tree>("tree", "grows", "/somewhere/tree.cpp"));
     const auto complaint = errorOf([] { Registry<Plant>::instance().entries(); });
     CHECK(complaint.code == ExitCode::InvalidConfig);
-    CHECK(complaint.has("tree.cpp: the default of parameter \"height\" breaks its own description"));
+    CHECK(complaint.has("tree.cpp: the default or example of parameter \"height\" breaks its own description"));
 }
