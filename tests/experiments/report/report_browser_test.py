@@ -280,28 +280,44 @@ def tells_how_it_was_tuned(browser):
     check("chains" in head and "1 s" in head and "2 s" in head, f"the head says '{head}'")
 
 
-def sorts_the_table(browser):
-    columns = browser.run("return document.querySelectorAll('#cell-table thead th').length")
-    index = browser.run(
-        "return [...document.querySelectorAll('#cell-table thead th')].findIndex((th) => th.classList.contains('wide'))"
-    )
-    check(0 <= index < columns, "no column of the primary metric")
-    values = (
-        "return [...document.querySelectorAll('#cell-table tbody tr')].map((tr) => tr.children[arguments[0]].sortValue)"
-    )
-    button = f"#cell-table thead th:nth-child({index + 1}) button"
-    browser.focus(button)
-    browser.press(ENTER)
-    check(browser.run(values, index) == sorted(browser.run(values, index)), "the first press does not sort upwards")
-    browser.click(button)
-    check(
-        browser.run(values, index) == sorted(browser.run(values, index), reverse=True),
-        "the second does not sort downwards",
-    )
-    order = browser.run(
-        "return [...document.querySelectorAll('#cell-table th[aria-sort]')].map((th) => th.getAttribute('aria-sort'))"
-    )
-    check(order == ["descending"], f"aria-sort says {order}")
+def sorts_every_table(browser):
+    """By each column with values: upwards by the keyboard, downwards by a click; what is missing stays last."""
+    names = browser.run("return [...document.querySelectorAll('main table')].map((table) => table.getAttribute('aria-label'))")
+    check(len(names) == len(set(names)) and None not in names, f"the tables are {names}")
+    kinds = {name.split(" on ")[0] for name in names}
+    check({"cells", "tuning", "mutations", "provenance", "mixing of pssmlt"} <= kinds, f"the tables are {names}")
+    head = """const table = [...document.querySelectorAll('main table')].find((t) => t.getAttribute('aria-label') === arguments[0]);
+        const headers = [...table.tHead.rows[0].cells];"""
+    for name in names:
+        titles = browser.run(head + "return headers.map((th) => [th.textContent, th.querySelector('button') !== null])", name)
+        check(all(sortable or not title for title, sortable in titles), f"{name} has columns {titles}")
+        for index in (i for i, (_, sortable) in enumerate(titles) if sortable):
+            button = f"table[aria-label='{name}'] thead th:nth-child({index + 1}) button"
+            column = f"{name}, {titles[index][0]}"
+            browser.focus(button)
+            browser.press(ENTER)
+            upwards = browser.run(ORDER, name, index)
+            browser.click(button)
+            downwards = browser.run(ORDER, name, index)
+            for order, (said, values) in (("ascending", upwards), ("descending", downwards)):
+                check(said == [order if i == index else None for i in range(len(titles))], f"{column}: aria-sort {said}")
+                known = [value for value in values if value is not None]
+                check(None not in values[: len(known)], f"{column}: what is missing is not last in {values}")
+                check(known == sorted(known, key=natural, reverse=order == "descending"), f"{column}: {order} is {values}")
+            check(sorted(map(str, upwards[1])) == sorted(map(str, downwards[1])), f"{column}: sorting changes the rows")
+
+
+# Of a table of this name: aria-sort of its headings, and what is displayed in a column as numbers where it is all numbers.
+ORDER = """const table = [...document.querySelectorAll('main table')].find((t) => t.getAttribute('aria-label') === arguments[0]);
+    return [[...table.tHead.rows[0].cells].map((th) => th.getAttribute('aria-sort')),
+            [...table.tBodies[0].rows].map((row) => row.cells[arguments[1]].sortValue ?? null)]"""
+
+
+def natural(value):
+    """Numbers by size, texts with numbers in them by those."""
+    if not isinstance(value, str):
+        return (0, value)
+    return (1, [(0, int(part), "") if part.isdigit() else (1, 0, part.casefold()) for part in re.split(r"(\d+)", value) if part])
 
 
 def draws_hole_maps(browser):
@@ -570,7 +586,7 @@ def test_page(page):
         moves_crops,
         saves_every_figure,
         tells_how_it_was_tuned,
-        sorts_the_table,
+        sorts_every_table,
         draws_hole_maps,
         chooses_the_caught_sampler,
         warns_in_red,
