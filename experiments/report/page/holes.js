@@ -208,11 +208,13 @@ function featureTable(group) {
 function occupancySection() {
     const drawn = groups.filter((group) => group.cells.some((cell) => Object.keys(cell.features ?? {}).length));
     if (!drawn.length) return null;
+    const mapped = cells.some((cell) => cell.grid);
     return section(
         "holes",
         "Occupancy",
-        "A path belongs to the last hole it crossed before the camera. Blue: the hole got too little light, orange: too much, hatched: nothing; a dot: significantly wrong " +
-            "(t test over runs, Holm, p ≤ 0.05). This shows trapping, which a noise-free image hides.",
+        `A path belongs to the last ${mapped ? "hole" : "place"} it crossed before the camera. ` +
+            (mapped ? "Blue: the hole got too little light, orange: too much, hatched: nothing; a dot" : "Red") +
+            ": significantly wrong (t test over runs, Holm, p ≤ 0.05). This shows trapping, which a noise-free image hides.",
         drawn.map((group) => {
             const withGrid = group.cells.filter((cell) => cell.grid),
                 holes = withGrid.flatMap((cell) => cell.grid.holes);
