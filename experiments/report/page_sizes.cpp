@@ -22,7 +22,7 @@ constexpr int kTechniqueEdge = 128;  ///< pixels, of the images of techniques
 /// Share of the rest for maps, where not every pixel has room.
 constexpr double kMapShare = 0.2;
 /// Of JPEG. With the first the amount of noise stays; the others keep more of each pixel.
-constexpr std::array kQualities{90, 93, 95, 96, 97, 98, 99, 100};
+constexpr std::array kQualities{90, 94, 97, 99, 100};
 
 /// What the images of all cells take. A sweep or a scene may give a cell a film of its own.
 struct Sizes {
@@ -70,7 +70,7 @@ std::optional<int> fittingQuality(const std::vector<CellPlan>& plans, int factor
     left.fill(most);
     const auto take = [&](const fs::path& file, int times) {
         const Image image = shrink(readImage(file.string()), factor);
-        for (std::size_t i = 0; i < left.size() && left[i] >= 0; ++i)
+        for (std::size_t i = 0; i < left.size() && left[i] >= 0 && left.front() >= 0; ++i)
             left[i] -= times * base64Size(double(encodeJpegPicture(image, kQualities[i]).bytes.size()));
     };
     std::set<fs::path> references;

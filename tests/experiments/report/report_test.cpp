@@ -245,8 +245,8 @@ TEST_CASE("a JPEG picture at its edges") {
 TEST_CASE("images too large for one page become JPEG, and shrink where that is not enough") {
     const std::string exact = pageOf({Image(700, 600, Rgb(1))});
     CHECK(exact.find(R"("shrink":1,"exact":true)") != exact.npos);
-    const std::string jpeg = pageOf({Image(1500, 1200, Rgb(1))});
-    CHECK(jpeg.find(R"("width":1500,"height":1200,"toe":)") != jpeg.npos);
+    const std::string jpeg = pageOf({Image(1800, 1500, Rgb(1))});
+    CHECK(jpeg.find(R"("width":1800,"height":1500,"toe":)") != jpeg.npos);
     CHECK(jpeg.find(R"("shrink":1,"exact":false)") != jpeg.npos);
     std::mt19937 random(5);
     Image noise(3200, 2000);
@@ -273,8 +273,8 @@ TEST_CASE("what pictures leave of the room improves the JPEG") {
 }
 
 TEST_CASE("cells may have films of their own") {
-    const std::string page = pageOf({Image(8, 8, Rgb(1)), Image(1500, 1200, Rgb(1))});
-    CHECK(page.find(R"("width":1500,"height":1200,"toe":)") != page.npos);
+    const std::string page = pageOf({Image(8, 8, Rgb(1)), Image(1800, 1500, Rgb(1))});
+    CHECK(page.find(R"("width":1800,"height":1500,"toe":)") != page.npos);
     CHECK(double(page.size()) < kReportBytes);
 }
 
