@@ -14,7 +14,6 @@ constexpr int kMantissaBits = 9;
 constexpr int kBias = 15;
 constexpr float kLargest = 65408;  // 511 · 2^(31 − 24)
 
-constexpr int kJpegQuality = 90;
 constexpr double kWhiteOverToe = 64;
 constexpr double kLargestOverWhite = 256;
 
@@ -52,7 +51,7 @@ std::string encodeRgb9e5(const Image& image) {
     return bytes;
 }
 
-JpegPicture encodeJpegPicture(const Image& image) {
+JpegPicture encodeJpegPicture(const Image& image, int quality) {
     const auto [white, largest] = whiteAndLargest(image);
     JpegPicture picture;
     std::vector<std::uint8_t> codes(3 * image.pixels.size());
@@ -65,7 +64,7 @@ JpegPicture encodeJpegPicture(const Image& image) {
                 *code++ = std::uint8_t(
                     std::lround(std::clamp(std::asinh(pixel[c] / picture.toe) / picture.step, 0.0, 255.0)));
     }
-    picture.bytes = encodeJpeg(codes, image.width, image.height, kJpegQuality);
+    picture.bytes = encodeJpeg(codes, image.width, image.height, quality);
     return picture;
 }
 

@@ -20,10 +20,10 @@ struct JpegPicture {
     double toe = 1, step = 0;
 };
 
-/// Codes are a few per cent apart; a JPEG of quality 90 adds some more where noise is strong, and leaves its amount as
-/// it is. Noisy renders take some 2 to 6 bits a pixel, RGB9E5 32. Values beyond 256 times the 99th percentile of the pixels' largest channels
-/// become that.
-JpegPicture encodeJpegPicture(const Image& image);
+/// Codes are a few per cent apart; a JPEG of quality 90 (of 100) adds some more where noise is strong, and leaves its
+/// amount as it is. Noisy renders then take some 2 to 6 bits a pixel, RGB9E5 32. Values beyond 256 times the 99th
+/// percentile of the pixels' largest channels become that.
+JpegPicture encodeJpegPicture(const Image& image, int quality);
 
 /// RFC 4648, section 4, with padding.
 std::string encodeBase64(std::string_view bytes);

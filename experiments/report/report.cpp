@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <string>
 
@@ -16,6 +17,9 @@ namespace ulam {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr double kTagBytes = 0.3e6;        ///< of a page, for the tags and sizes of some thousand images
+constexpr double kFewestImageBytes = 4e6;  ///< whatever tables take
 
 /// JSON that cannot end the element it stands in.
 std::string scriptSafe(const Json& json) {
@@ -59,8 +63,6 @@ std::string fill(std::string_view page, const std::map<std::string_view, std::st
 std::string makePage(const fs::path& runDir, const Json& summary) {
     const Json cells = summary.value("cells", Json::array());
     const std::string metric = summary.value("primary_metric", std::string("relmse"));
-    const PagePictures pictures = gatherPictures(runDir, cells, metric);
-
     Json results = Json::object();
     for (const Json& cell : cells) {
         const std::string name = cell.at("cell").get<std::string>();
@@ -71,15 +73,19 @@ std::string makePage(const fs::path& runDir, const Json& summary) {
             break;
         }
     }
-    const Json data = {{"summary", summary},
-                       {"experiment", readJsonIfThere(runDir / "experiment.json")},
-                       {"resolved", readJsonIfThere(runDir / "resolved.json")},
-                       {"provenance", readJsonIfThere(runDir / "provenance.json")},
-                       {"results", results},
-                       {"pictures", pictures.cells},
-                       {"images", pictures.sizes},
-                       {"shrink", pictures.shrink},
-                       {"exact", pictures.exact}};
+    Json data = {{"summary", summary},
+                 {"experiment", readJsonIfThere(runDir / "experiment.json")},
+                 {"resolved", readJsonIfThere(runDir / "resolved.json")},
+                 {"provenance", readJsonIfThere(runDir / "provenance.json")},
+                 {"results", results}};
+    const double others =
+        double(scriptSafe(data).size() + page::kTemplate.size() + page::kStyle.size() + page::kScript.size());
+    const PagePictures pictures =
+        gatherPictures(runDir, cells, metric, std::max(kFewestImageBytes, kReportBytes - kTagBytes - others));
+    data["pictures"] = pictures.cells;
+    data["images"] = pictures.sizes;
+    data["shrink"] = pictures.shrink;
+    data["exact"] = pictures.exact;
     const std::string title = htmlText(summary.value("name", std::string("run")) + " · Ulam");
     const std::string json = scriptSafe(data);
     return fill(page::kTemplate, {{"TITLE", title},

@@ -12,10 +12,10 @@ namespace ulam {
 /// experiment.json, resolved.json, provenance.json, the cells' r000/result.json and all images are shown where they
 /// exist. Of each cell the page holds the mean over replicates, the median and the worst replicate, the reference, and
 /// maps of how much the replicates scatter and where their mean is not the reference's; the median replicate's images
-/// of techniques and its chains. Where that is more than kReportImageBytes, pictures become JPEG, maps have larger
-/// blocks, all are shrunk until they fit, and of many cells fewer chains are shown. Fails with InputMissing without
-/// summary.json, InvalidConfig where a file is damaged or the images of a cell differ in size, CannotWrite where
-/// report.html cannot be written.
+/// of techniques and its chains. Where the page would be larger than kReportBytes, pictures become JPEG, maps have
+/// larger blocks, all are shrunk until they fit, and of many cells fewer chains are shown. Fails with InputMissing
+/// without summary.json, InvalidConfig where a file is damaged or the images of a cell differ in size, CannotWrite
+/// where report.html cannot be written.
 void writeReport(const std::filesystem::path& runDir);
 /// The same where the summary has just been made.
 void writeReport(const std::filesystem::path& runDir, const Json& summary);
@@ -23,7 +23,7 @@ void writeReport(const std::filesystem::path& runDir, const Json& summary);
 /// The same page as text, of another summary than that of the folder. Errors as above.
 std::string reportPage(const std::filesystem::path& runDir, const Json& summary);
 
-/// What the images and chains of a page may take, in bytes of base64 text.
-inline constexpr double kReportImageBytes = 24e6;
+/// What a page may take, in bytes, unless its tables alone take nearly as much.
+inline constexpr double kReportBytes = 25e6;
 
 }  // namespace ulam

@@ -32,8 +32,8 @@ public:
     std::size_t add(const Image& image) {
         return add({{"width", image.width}, {"height", image.height}}, encodeRgb9e5(image));
     }
-    std::size_t addJpeg(const Image& image) {
-        const JpegPicture picture = encodeJpegPicture(image);
+    std::size_t addJpeg(const Image& image, int quality) {
+        const JpegPicture picture = encodeJpegPicture(image, quality);
         return add({{"width", image.width}, {"height", image.height}, {"toe", picture.toe}, {"step", picture.step}},
                    picture.bytes);
     }
@@ -54,7 +54,8 @@ public:
 
 class Gatherer {
 public:
-    Gatherer(std::vector<CellPlan> plans) : plans_(std::move(plans)), sizes_(choosePageSizes(plans_)) {}
+    Gatherer(std::vector<CellPlan> plans, double room)
+        : plans_(std::move(plans)), sizes_(choosePageSizes(plans_, room)) {}
 
     PagePictures gather() {
         PagePictures page;
@@ -76,7 +77,7 @@ private:
 
     std::size_t addPicture(const Image& image) {
         const Image small = shrink(image, sizes_.pictures);
-        return sizes_.exact ? elements_.add(small) : elements_.addJpeg(small);
+        return sizes_.exact ? elements_.add(small) : elements_.addJpeg(small, sizes_.quality);
     }
 
     Json embed(const CellPlan& plan) {
@@ -155,10 +156,10 @@ private:
 
 }  // namespace
 
-PagePictures gatherPictures(const fs::path& runDir, const Json& cells, const std::string& metric) {
+PagePictures gatherPictures(const fs::path& runDir, const Json& cells, const std::string& metric, double room) {
     std::vector<CellPlan> plans;
     for (const Json& cell : cells) plans.push_back(planCell(runDir, cell, metric));
-    return Gatherer(std::move(plans)).gather();
+    return Gatherer(std::move(plans), room).gather();
 }
 
 }  // namespace ulam

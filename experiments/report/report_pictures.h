@@ -17,7 +17,8 @@ struct PagePictures {
 };
 
 /// Of the cells of summary.json, from the files below RUN_DIR; what is not there is left out. `metric` is the primary
-/// one.
-PagePictures gatherPictures(const std::filesystem::path& runDir, const Json& cells, const std::string& metric);
+/// one, `room` what the base64 of all may take, in bytes.
+PagePictures gatherPictures(const std::filesystem::path& runDir, const Json& cells, const std::string& metric,
+                            double room);
 
 }  // namespace ulam

@@ -35,8 +35,8 @@ EXPERIMENT = {
 REPORT = """const frame = document.querySelector("iframe:not(.coming)");
     if (!frame) return null;
     const page = frame.contentDocument, data = JSON.parse(page.getElementById("data").textContent);
-    const { viewers, order, scroll } = frame.contentWindow.reportView.get();
-    return { summary: data.summary, verdicts: page.querySelectorAll("#verdict").length, scroll, order, view: viewers[0] }"""
+    const { viewers, orders, scroll } = frame.contentWindow.reportView.get();
+    return { summary: data.summary, verdicts: page.querySelectorAll("#verdict").length, scroll, orders, view: viewers[0] }"""
 
 
 class WatchTest(unittest.TestCase):
@@ -108,12 +108,12 @@ class WatchTest(unittest.TestCase):
             report.scrollTo(0, 300);
             const view = report.reportView.get(), [first, second] = view.viewers[0].insets;
             Object.assign(view.viewers[0], { zoom: 2, exposure: 1.5, shown: "mean mlt", insets: [{ ...first, u: 0.4 }, second] });
-            report.reportView.set({ ...view, order: { column: "sampler", direction: "descending" } })""")
+            report.reportView.set({ ...view, orders: [{ table: "cells", column: "sampler", direction: "descending" }] })""")
         later = self.until(lambda: (now := browser.run(REPORT)) and now["summary"] != part["summary"] and now, "the next report")
         self.assertEqual((later["scroll"], later["view"]["zoom"], later["view"]["exposure"], later["view"]["shown"]),
                          (300, 2, 1.5, "mean mlt"))
         self.assertEqual(later["view"]["insets"][0]["u"], 0.4)
-        self.assertEqual(later["order"], {"column": "sampler", "direction": "descending"})
+        self.assertEqual(later["orders"], [{"table": "cells", "column": "sampler", "direction": "descending"}])
 
         self.until(lambda: self.state()["totals"]["done"] >= 4, "the second replicate")
         run.send_signal(signal.SIGINT)

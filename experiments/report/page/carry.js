@@ -35,24 +35,28 @@ function chooseOptions(chosen) {
     }
 }
 
-const tableHeaders = () => [...document.querySelectorAll("#cell-table th")];
+const tableOf = (header) => header.closest("table").getAttribute("aria-label");
 
-function tableOrder() {
-    const sorted = tableHeaders().find((header) => header.ariaSort);
-    return sorted && { column: sorted.textContent, direction: sorted.ariaSort };
-}
+const tableOrders = () =>
+    [...document.querySelectorAll("main th[aria-sort]")].map((header) => ({
+        table: tableOf(header),
+        column: header.textContent,
+        direction: header.ariaSort,
+    }));
 
-function sortTable({ column, direction }) {
-    const header = tableHeaders().find((other) => other.textContent === column);
+function sortTable({ table, column, direction }) {
+    const header = [...document.querySelectorAll("main th:has(> button)")].find(
+        (other) => tableOf(other) === table && other.textContent === column,
+    );
     while (header && header.ariaSort !== direction) header.querySelector("button").click();
 }
 
 window.reportView = {
-    get: () => ({ viewers: viewsOfViewers(), chosen: chosenOptions(), order: tableOrder(), scroll: scrollY }),
-    set({ viewers: views = [], chosen = [], order, scroll }) {
+    get: () => ({ viewers: viewsOfViewers(), chosen: chosenOptions(), orders: tableOrders(), scroll: scrollY }),
+    set({ viewers: views = [], chosen = [], orders = [], scroll }) {
         setViewers(views);
         chooseOptions(chosen);
-        if (order) sortTable(order);
+        orders.forEach(sortTable);
         if (scroll !== undefined) scrollTo({ top: scroll, behavior: "instant" });
     },
 };

@@ -227,40 +227,18 @@ class ChainFilm {
 }
 
 /// R-hat and effective sample sizes of the run as result.json has them.
-function mixingTable(chains) {
+function mixingTable(cell, chains) {
     const rows = Object.entries(chains.mixing ?? {}).filter(([, found]) => found && typeof found === "object");
     if (!rows.length) return null;
-    const columns = [...new Set(rows.flatMap(([, found]) => Object.keys(found)))];
     const readableName = (name) => name.replace(/_/g, " ").replace("rhat", "R-hat").replace("ess", "ESS");
-    return el(
-        "div",
-        { class: "scroll" },
-        el(
-            "table",
-            {},
-            el(
-                "thead",
-                {},
-                el(
-                    "tr",
-                    {},
-                    ["scalar", ...columns.map(readableName)].map((title) => el("th", { scope: "col" }, title)),
-                ),
-            ),
-            el(
-                "tbody",
-                {},
-                rows.map(([scalar, found]) =>
-                    el(
-                        "tr",
-                        {},
-                        el("th", { scope: "row" }, readableName(scalar)),
-                        columns.map((column) => el("td", {}, number(found[column]))),
-                    ),
-                ),
-            ),
-        ),
-    );
+    const columns = [...new Set(rows.flatMap(([, found]) => Object.keys(found)))].map((column) => ({
+        title: readableName(column),
+        value: ([, found]) => found[column],
+    }));
+    return sortableTable(`mixing of ${cell.label} on ${cell.group.title}`, [
+        { title: "scalar", names: true, value: ([scalar]) => readableName(scalar) },
+        ...columns,
+    ], rows);
 }
 
 function chainPanel(cell) {
@@ -280,7 +258,7 @@ function chainPanel(cell) {
                 const name = `${kind} of ${scalar.name}, ${cell.group.title}, ${cell.label}`;
                 return figure(name, (paper) => make(name, paper));
             }),
-            ...[mixingTable(chains)].filter(Boolean),
+            ...[mixingTable(cell, chains)].filter(Boolean),
         );
     };
     const { scalars } = chains;

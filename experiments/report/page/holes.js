@@ -176,60 +176,45 @@ function occupancyCard(cell, scales) {
 const ratioLabels = (limit) => [`1∕${plain(limit)}`, "1", plain(limit)];
 const ratioBar = (limit) => colourBar((t) => diverging(2 * t - 1), ratioLabels(limit), "share over true share");
 
-/// Places other than a grid of holes: a plain table.
+/// Places that are on no map: those of a door or a mirror, and the only hole of a wall.
 function featureTable(group) {
     const rows = group.cells.flatMap((cell) =>
         Object.entries(cell.features ?? {})
             .filter(([name]) => !holeIndex(name) || !cell.grid)
-            .map(([name, f]) =>
-                el(
-                    "tr",
-                    {},
-                    el("td", { class: "text" }, samplerMark(cell), cell.label),
-                    el("td", { class: "text" }, name),
-                    el("td", {}, percent(f.share), el("span", { class: "ci" }, interval(f.share_ci95, percent))),
-                    el("td", {}, percent(f.truth)),
-                    el(
-                        "td",
-                        { class: isNumber(f.p_adjusted) && f.p_adjusted <= 0.05 ? "alarming" : null },
-                        pValue(f.p_adjusted),
-                    ),
-                    el("td", {}, percent(f.relative_sd)),
-                    el("td", {}, number(f.jumps_per_million)),
-                ),
-            ),
+            .map(([name, feature]) => ({ ...feature, name, cell })),
     );
     if (!rows.length) return null;
-    return el(
-        "div",
-        { class: "scroll" },
-        el(
-            "table",
-            {},
-            el(
-                "thead",
-                {},
-                el(
-                    "tr",
-                    {},
-                    ["sampler", "feature", "share", "truth", "p", "spread over runs", "jumps ∕ 10⁶ mutations"].map(
-                        (title) => el("th", { scope: "col" }, title),
-                    ),
-                ),
-            ),
-            el("tbody", {}, rows),
-        ),
-    );
+    const columns = [
+        { title: "sampler", value: (f) => f.cell.label, show: (f) => [samplerMark(f.cell), f.cell.label] },
+        { title: "feature", value: (f) => f.name },
+        {
+            title: "share",
+            value: (f) => f.share,
+            show: (f) => [percent(f.share), el("span", { class: "ci" }, interval(f.share_ci95, percent))],
+        },
+        { title: "truth", value: (f) => f.truth, show: (f) => percent(f.truth) },
+        {
+            title: "p",
+            value: (f) => f.p_adjusted,
+            show: (f) => pValue(f.p_adjusted),
+            alarm: (f) => isNumber(f.p_adjusted) && f.p_adjusted <= 0.05,
+        },
+        { title: "spread over runs", value: (f) => f.relative_sd, show: (f) => percent(f.relative_sd) },
+        { title: "jumps ∕ 10⁶ mutations", value: (f) => f.jumps_per_million },
+    ];
+    return sortableTable(`features of ${group.title}`, columns, rows);
 }
 
 function occupancySection() {
     const drawn = groups.filter((group) => group.cells.some((cell) => Object.keys(cell.features ?? {}).length));
     if (!drawn.length) return null;
+    const mapped = cells.some((cell) => cell.grid);
     return section(
         "holes",
         "Occupancy",
-        "A path belongs to the last hole it crossed before the camera. Blue: the hole got too little light, orange: too much, hatched: nothing; a dot: significantly wrong " +
-            "(t test over runs, Holm, p ≤ 0.05). This shows trapping, which a noise-free image hides.",
+        `A path belongs to the last ${mapped ? "hole" : "place"} it crossed before the camera. ` +
+            (mapped ? "Blue: the hole got too little light, orange: too much, hatched: nothing; a dot" : "Red") +
+            ": significantly wrong (t test over runs, Holm, p ≤ 0.05). This shows trapping, which a noise-free image hides.",
         drawn.map((group) => {
             const withGrid = group.cells.filter((cell) => cell.grid),
                 holes = withGrid.flatMap((cell) => cell.grid.holes);

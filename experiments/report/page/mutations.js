@@ -82,89 +82,57 @@ function mutationsSection() {
     const judged = cells.filter((cell) => Object.keys(cell.mutation_statistics ?? {}).length);
     if (!judged.length) return null;
     const rows = judged.flatMap((cell) =>
-        Object.entries(cell.mutation_statistics).map(([name, statistics], i, all) => ({
-            cell,
-            name,
-            statistics,
-            first: i === 0,
-            span: all.length,
-            shares: outcomeShares(statistics),
-        })),
+        Object.entries(cell.mutation_statistics).map(([name, statistics]) => {
+            const shares = outcomeShares(statistics);
+            return { cell, name, statistics, shares, share: Object.fromEntries(shares) };
+        }),
     );
     const outcomes = [...new Set(rows.flatMap((row) => row.shares.map(([name]) => name)))];
     const reasons = outcomes.filter((name) => name !== "accepted" && name !== kByRatio);
-    const columns = ["accepted", ...reasons, ...(outcomes.includes(kByRatio) ? [kByRatio] : [])];
-    const withZero = rows.some((row) => row.statistics.zero > 0);
-    const body = rows.map(({ cell, name, statistics, first, span, shares }) => {
-        const share = Object.fromEntries(shares);
-        return el(
-            "tr",
-            { class: first ? "first" : null },
-            first &&
-                el(
-                    "th",
-                    { scope: "rowgroup", rowspan: span },
-                    samplerMark(cell),
-                    cell.label,
-                    el("span", { class: "ci" }, cell.group.title),
-                ),
-            el("td", { class: "text" }, name),
-            el("td", { class: "bar" }, outcomeBar(shares, reasons)),
-            el("td", {}, count(statistics.proposed)),
-            columns.map((column) => el("td", {}, share[column] ? percent(share[column]) : kDash)),
-            withZero &&
-                el(
-                    "td",
-                    {},
-                    statistics.zero && statistics.proposed ? percent(statistics.zero / statistics.proposed) : kDash,
-                ),
-            el(
-                "td",
-                {},
-                statistics.seconds && statistics.proposed
-                    ? number((1e6 * statistics.seconds) / statistics.proposed)
-                    : kDash,
-            ),
-            el("td", {}, number(statistics.esjd_pixels)),
-        );
-    });
+    const shown = ["accepted", ...reasons, ...(outcomes.includes(kByRatio) ? [kByRatio] : [])];
+    const perProposal = ({ statistics }, field) =>
+        statistics[field] && statistics.proposed ? statistics[field] / statistics.proposed : null;
+    const columns = [
+        groups.length > 1 && { title: "scene", value: ({ cell }) => cell.group.title },
+        { title: "sampler", value: ({ cell }) => cell.label, show: ({ cell }) => [samplerMark(cell), cell.label] },
+        { title: "mutation", value: ({ name }) => name },
+        { title: "", kind: "bar", show: ({ shares }) => outcomeBar(shares, reasons) },
+        {
+            title: "proposed",
+            value: ({ statistics }) => statistics.proposed,
+            show: ({ statistics }) => count(statistics.proposed),
+        },
+        ...shown.map((outcome) => ({
+            title: outcome,
+            kind: "outcome",
+            style: `--outcome: ${outcomeColour(outcome, reasons)}`,
+            value: ({ share }) => share[outcome],
+            show: ({ share }) => percent(share[outcome]),
+        })),
+        rows.some(({ statistics }) => statistics.zero > 0) && {
+            title: "zero",
+            meaning: "proposals whose contribution is zero, for whatever reason",
+            value: (row) => perProposal(row, "zero"),
+            show: (row) => percent(perProposal(row, "zero")),
+        },
+        {
+            title: "µs",
+            meaning: "time of one proposal",
+            value: (row) => perProposal(row, "seconds"),
+            show: (row) => number(1e6 * (perProposal(row, "seconds") ?? NaN)),
+        },
+        {
+            title: "jump²",
+            meaning: "expected squared jump on the image, in square pixels",
+            value: ({ statistics }) => statistics.esjd_pixels,
+        },
+    ].filter(Boolean);
     const name = "what became of the proposals";
-    const head = (title, meaning) => el("th", { scope: "col", title: meaning }, title);
     return section(
         "mutations",
         "Mutations",
         "What became of the proposals, summed over runs.",
-        el(
-            "div",
-            { class: "scroll" },
-            el(
-                "table",
-                { id: "mutation-table" },
-                el(
-                    "thead",
-                    {},
-                    el(
-                        "tr",
-                        {},
-                        head("sampler"),
-                        head("mutation"),
-                        head(""),
-                        head("proposed"),
-                        columns.map((name) =>
-                            el(
-                                "th",
-                                { scope: "col", class: "outcome", style: `--outcome: ${outcomeColour(name, reasons)}` },
-                                el("span", {}, name),
-                            ),
-                        ),
-                        withZero && head("zero", "proposals whose contribution is zero, for whatever reason"),
-                        head("µs", "time of one proposal"),
-                        head("jump²", "expected squared jump on the image, in square pixels"),
-                    ),
-                ),
-                el("tbody", {}, body),
-            ),
-        ),
-        saveButtons(name, () => outcomeFigure(name, rows, columns, reasons)),
+        sortableTable("mutations", columns, rows, { id: "mutation-table" }),
+        saveButtons(name, () => outcomeFigure(name, rows, shown, reasons)),
     );
 }

@@ -105,27 +105,21 @@ function flatten(value, prefix = "") {
 }
 
 function provenanceSection() {
-    const rows = flatten(data.provenance ?? {}).map(([name, value]) =>
-        el("tr", {}, el("th", { scope: "row" }, name), el("td", { class: "text" }, String(value))),
-    );
     const images = cells
         .filter((cell) => cell.result.image_sha256)
-        .map((cell) =>
-            el(
-                "tr",
-                {},
-                el("th", { scope: "row" }, `sha256 of ${cell.cell}/r${String(resultRun(cell)).padStart(3, "0")}`),
-                el("td", { class: "text" }, cell.result.image_sha256),
-            ),
-        );
+        .map((cell) => [`sha256 of ${cell.cell}/r${String(resultRun(cell)).padStart(3, "0")}`, cell.result.image_sha256]);
+    const rows = [...flatten(data.provenance ?? {}), ...images];
+    const columns = [
+        { title: "name", names: true, value: ([name]) => name },
+        { title: "value", value: ([, value]) => String(value) },
+    ];
     const file = (title, json) =>
         json && el("details", {}, el("summary", {}, title), el("pre", {}, JSON.stringify(json, null, 2)));
     return section(
         "provenance",
         "Provenance",
         null,
-        rows.length + images.length > 0 &&
-            el("div", { class: "scroll" }, el("table", { class: "provenance" }, el("tbody", {}, rows, images))),
+        rows.length > 0 && sortableTable("provenance", columns, rows, { id: "provenance-table" }),
         file("experiment.json, as written", data.experiment),
         file("resolved.json: every default, every seed", data.resolved),
     );

@@ -10,29 +10,24 @@ function tuningSection() {
     const last = (candidate) => candidate.scores.length,
         score = (candidate) => candidate.scores.at(-1) ?? Number.MAX_VALUE;
     const sorted = [...candidates].sort((a, b) => last(b) - last(a) || score(a) - score(b));
-    const row = ({ values, scores }) =>
-        el(
-            "tr",
-            { class: same(values) ? "winner" : "" },
-            names.map((name) => el("th", { scope: "row" }, said(values[name]))),
-            rounds.map((_, k) => el("td", {}, isNumber(scores[k]) ? number(Math.exp(scores[k])) : scores[k] === null ? "failed" : kDash)),
-            el("td", { class: "text" }, same(values) ? "chosen" : ""),
-        );
-    const head = [
-        ...names.map((name) => el("th", { scope: "col" }, name.split(".").slice(2).join("."))),
-        ...rounds.map((round, k) =>
-            el("th", { scope: "col" }, `round ${k + 1}`, el("span", { class: "ci" }, budgetText(round.budget))),
-        ),
-        el("th", { scope: "col" }, ""),
+    const columns = [
+        ...names.map((name) => ({
+            title: name.split(".").slice(2).join("."),
+            names: true,
+            value: ({ values }) => (isNumber(values[name]) ? values[name] : JSON.stringify(values[name])),
+            show: ({ values }) => said(values[name]),
+        })),
+        ...rounds.map((round, k) => ({
+            title: [`round ${k + 1}`, el("span", { class: "ci" }, budgetText(round.budget))],
+            value: ({ scores }) => scores[k],
+            show: ({ scores }) => (isNumber(scores[k]) ? number(Math.exp(scores[k])) : scores[k] === null ? "failed" : kDash),
+        })),
+        { title: "", kind: "text", show: ({ values }) => (same(values) ? "chosen" : "") },
     ];
     return section(
         "tuning",
         "Tuning",
         `Parameters of ${sampler} that were tried, with their ${metricName(primaryMetric)} (geometric mean over scenes); the best of a round went on with more budget. ${sampler} is compared with the parameters chosen here, at random numbers that no round used; ${sampler}_untuned is as it was written.`,
-        el(
-            "div",
-            { class: "scroll" },
-            el("table", { id: "tuning-table" }, el("thead", {}, el("tr", {}, head)), el("tbody", {}, sorted.map(row))),
-        ),
+        sortableTable("tuning", columns, sorted, { id: "tuning-table", rowClass: ({ values }) => (same(values) ? "winner" : null) }),
     );
 }

@@ -3,6 +3,7 @@
 import contextlib
 import http.client
 import json
+import math
 import os
 import pathlib
 import re
@@ -186,6 +187,63 @@ def with_data(page, data, path, elements=""):
     safe = json.dumps(data).replace("<", "\\u003c")
     path.write_text(text[: found.start(2)] + safe + found[3] + elements + text[found.end() :], encoding="utf-8")
     return path
+
+
+MULTIPLES = {"%": 0.01, "k": 1e3, "M": 1e6, "G": 1e9}
+
+
+def number_of(text):
+    """The number that the page writes so: 0.0120, 2.40 M, 3.4 × 10⁻⁵, −1 %."""
+    text = text.replace("−", "-").replace("\u2009×\u200910", "e").translate(str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-"))
+    digits, _, unit = text.partition("\u202f")
+    return float(digits) * MULTIPLES.get(unit, 1)
+
+
+def read_plot(browser, name):
+    """What a plot with logarithmic axes holds, by its ticks: {colour: [(x, y, lower, upper), …]}, bounds being those of the
+    band."""
+    drawn = browser.run(
+        """const root = document.querySelector(`svg[aria-label="${arguments[0]}"]`);
+        const ticks = (axis) => [...root.querySelectorAll(`.${axis}-tick`)].map((t) =>
+            [Number(t.getAttribute(axis)) - (axis === 'y' ? 4 : 0), t.textContent]);  // labels are centred on their ticks
+        const places = (path) => path && path.getAttribute('d').match(/[\\d.]+/g).map(Number);
+        return { x: ticks('x'), y: ticks('y'), series: [...root.querySelectorAll('.series')].map((g) => {
+            const line = g.querySelector(':scope > path[fill=none]');
+            return [line.getAttribute('stroke'), places(line), places(g.querySelector('.band'))];
+        }) }""",
+        name,
+    )
+
+    def scale(ticks):
+        (a, low), (b, high) = [(at, math.log(number_of(text))) for at, text in (ticks[0], ticks[-1])]
+        return lambda at: math.exp(low + (high - low) * (at - a) / (b - a))
+
+    x, y = scale(drawn["x"]), scale(drawn["y"])
+    found = {}
+    for colour, line, band in drawn["series"]:
+        points = len(line) // 2
+        check(len(band) == 2 * len(line), f"{name}: the band has {len(band)} numbers, the line {len(line)}")
+        upper, lower = band[1 : 2 * points : 2], band[2 * points + 1 :: 2][::-1]
+        found[colour] = [(x(u), y(v), y(lo), y(hi)) for u, v, lo, hi in zip(line[::2], line[1::2], lower, upper, strict=True)]
+    return found
+
+
+def check_plot(browser, legend, name, expected):
+    """A plot has the lines of `expected`, {name in the legend: [(x, y, lower, upper), …]}, but for what drawing rounds."""
+    colours = browser.run(
+        """return [...arguments[0].querySelectorAll('li:has(b)')].map((item) =>
+            [item.querySelector('b').textContent, item.querySelector('line').getAttribute('stroke')])""",
+        legend,
+    )
+    found = read_plot(browser, name)
+    labels = {colour: label for label, colour in colours}
+    check({labels[colour] for colour in found} == set(expected), f"{name} has lines of {[labels[c] for c in found]}")
+    for colour, points in found.items():
+        wanted = expected[labels[colour]]
+        check(len(points) == len(wanted), f"{name}: {labels[colour]} has {len(points)} points, not {len(wanted)}")
+        for point, numbers in zip(points, wanted, strict=True):
+            near = all(abs(a / b - 1) < 0.01 for a, b in zip(point, numbers, strict=True))
+            check(near, f"{name}: {labels[colour]} is drawn at {point}, not {numbers}")
 
 
 def complaints(browser):

@@ -15,7 +15,7 @@ import time
 import xml.etree.ElementTree as xml
 import zlib
 
-from browser import DOWN, ELEMENT, RIGHT, UP, check, complaints, report, run_tests, with_data
+from browser import DOWN, ELEMENT, RIGHT, UP, check, check_plot, complaints, number_of, report, run_tests, with_data
 
 HOLES, CHAINS = "scenes.hidden.holes", "samplers.mlt.chains"
 SVG = "{http://www.w3.org/2000/svg}"
@@ -128,6 +128,59 @@ def chooses_the_swept_value(browser):
     )
     check(dashed == 1, f"{dashed} dashed lines; bdpt has no chains and is the same everywhere")
     browser.press(UP)
+
+
+def plots_the_errors_of_the_sweep(browser):
+    """Of each number of chains both samplers' errors with their intervals."""
+    cells = made_up_sweep()["summary"]["cells"]
+    legend = browser.run("return document.querySelector('#sweep .legend')")
+    for chains in (100, 1000, 10000):
+        expected = {"bdpt": [], "mlt": []}
+        for cell in cells:
+            if cell["sweep"].get(CHAINS, chains) == chains:
+                error = cell["metrics"]["relmse"]
+                expected[cell["sampler"]].append((cell["sweep"][HOLES], error["mean"], *error["ci95"]))
+        check_plot(browser, legend, f"relMSE against holes, hidden, mlt.chains = {chains}", expected)
+
+
+def maps_hold_the_values_of_the_sweep(browser):
+    """Each square stands at the values of its cell, has its figure in it, and its colour where that is on the scale."""
+    maps = browser.run(
+        """return [...document.querySelectorAll('#sweep .maps svg[aria-label]')].map((root) => {
+            const number = (node, name) => Number(node.getAttribute(name));
+            const ticks = (axis) => [...root.querySelectorAll(`.${axis}-tick`)].map((t) => [number(t, axis), t.textContent]);
+            const bar = [...root.querySelectorAll('g > rect[height="9"]')], labels = [...bar[0].parentElement.querySelectorAll('text')];
+            return { name: root.ariaLabel, x: ticks('x'), y: ticks('y'), bar: bar.map((r) => r.getAttribute('fill')),
+                     labels: labels.slice(0, 3).map((t) => t.textContent),
+                     squares: [...root.querySelectorAll('[data-cell]')].map((g) => {
+                         const box = g.querySelector('rect'), middle = (at, size) => number(box, at) + number(box, size) / 2;
+                         return [g.dataset.cell, middle('x', 'width'), middle('y', 'height'), box.getAttribute('fill'),
+                                 g.querySelector('text').textContent];
+                     }) };
+        })"""
+    )
+    summary = made_up_sweep()["summary"]
+    cells = {cell["cell"]: cell for cell in summary["cells"]}
+    values = {
+        "relMSE": {name: cell["metrics"]["relmse"]["mean"] for name, cell in cells.items()},
+        "ratio to bdpt": {comparison["cell"]: comparison["ratio"] for comparison in summary["comparisons"]},
+    }
+    check([m["name"].split(" over ")[0] for m in maps] == list(values), f"the maps are {[m['name'] for m in maps]}")
+    for found, expected in zip(maps, values.values(), strict=True):
+        high = number_of(found["labels"][2])
+        low = 1 / high if found["labels"][0].startswith("1∕") else number_of(found["labels"][0])
+        bar = [[int(c) for c in re.findall(r"\d+", colour)] for colour in found["bar"]]
+        check(len(found["squares"]) == 12 and len(bar) == 64, f"{len(found['squares'])} squares, {len(bar)} colours")
+        for name, x, y, colour, figure in found["squares"]:
+            value = expected[name]
+            check(abs(number_of(figure) / value - 1) < 0.051, f"{name}: {figure} stands for {value}")
+            for ticks, at, path in ((found["x"], x, CHAINS), (found["y"], y, HOLES)):
+                nearest = min(ticks, key=lambda tick: abs(tick[0] - at))[1]
+                check(number_of(nearest) == cells[name]["sweep"][path], f"{name} stands at {nearest}")
+            rgb = [int(c) for c in re.findall(r"\d+", colour)]
+            place = min(range(64), key=lambda i: math.dist(bar[i], rgb)) / 63
+            shown = low * (high / low) ** place
+            check(abs(shown / min(high, max(low, value)) - 1) < 0.08, f"{name}: the colour is that of {shown}, not {value}")
 
 
 def draws_maps(browser):
@@ -284,6 +337,8 @@ def main():
         loads_without_errors,
         draws_error_against_difficulty,
         reads_points_by_keys,
+        plots_the_errors_of_the_sweep,
+        maps_hold_the_values_of_the_sweep,
         chooses_the_swept_value,
         draws_maps,
         saves_svg,

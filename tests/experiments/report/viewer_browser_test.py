@@ -349,7 +349,10 @@ def keeps_choices_in_other_colours(browser):
         rows: [...document.querySelectorAll('#cell-table tbody tr')].map((row) => row.textContent),
         frame: document.querySelector('.inset-0').style.left }"""
     before = browser.run(found)
-    check(before["order"] == {"column": "sampler", "direction": "descending"}, f"the order is {before['order']}")
+    check(
+        before["orders"] == [{"table": "cells", "column": "sampler", "direction": "descending"}],
+        f"the orders are {before['orders']}",
+    )
     check(before["viewers"][0]["zoom"] > 2 and before["scroll"] == 333, f"the view is {before}")
     browser.media("dark")
     after = browser.run(found)
