@@ -226,11 +226,14 @@ class ChainFilm {
     }
 }
 
-/// R-hat and effective sample sizes of the run as result.json has them.
+/// R-hat, effective sample sizes and autocorrelation times of the run as result.json has them.
 function mixingTable(chains) {
     const rows = Object.entries(chains.mixing ?? {}).filter(([, found]) => found && typeof found === "object");
     if (!rows.length) return null;
-    const columns = [...new Set(rows.flatMap(([, found]) => Object.keys(found)))];
+    const bound = "integrated_autocorrelation_bound",
+        columns = [...new Set(rows.flatMap(([, found]) => Object.keys(found)))].filter((column) => column !== bound);
+    const sign = (column, found) =>
+        column === "integrated_autocorrelation_mutations" ? ({ upper: "≤ ", lower: "≥ " }[found[bound]] ?? "") : "";
     const readableName = (name) => name.replace(/_/g, " ").replace("rhat", "R-hat").replace("ess", "ESS");
     return el(
         "div",
@@ -255,7 +258,7 @@ function mixingTable(chains) {
                         "tr",
                         {},
                         el("th", { scope: "row" }, readableName(scalar)),
-                        columns.map((column) => el("td", {}, number(found[column]))),
+                        columns.map((column) => el("td", {}, sign(column, found) + number(found[column]))),
                     ),
                 ),
             ),
