@@ -39,6 +39,9 @@ using TargetMaker = std::function<std::unique_ptr<Target>()>;
 
 class ChainRun : public SamplerRun {
 public:
+    /// Steps a chain takes before the next one's turn: long enough to keep its state in the cache.
+    static constexpr uint64_t kChunk = 64;
+
     ChainRun(const RunContext& context, const ChainParameters& parameters, const BidirectionalOptions& options, MutationMix mix, Deposit deposit,
              const TargetMaker& makeTarget);
     ~ChainRun() override;
@@ -58,8 +61,6 @@ public:
     Json replay(const NonFiniteEvent& event) override;
 
 private:
-    /// Steps a chain takes before the next one's turn: long enough to keep its state in the cache.
-    static constexpr uint64_t kChunk = 64;
     struct Worker;
     struct ChainSlot;
 

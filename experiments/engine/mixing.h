@@ -6,7 +6,8 @@
 
 namespace ulam {
 
-/// By scalar: nested and split R-hat, effective sample size and its rate. Null where the traces are too short.
+/// By scalar: nested and split R-hat, effective sample size and its rate, integrated autocorrelation time in mutations
+/// of a chain and whether that is a bound only (docs/statistics.md). Null where the traces are too short.
 Json mixing(const std::vector<ChainTrace>& traces, double seconds, int threads);
 
 }  // namespace ulam

@@ -28,9 +28,9 @@ void requireTraces(std::span<const Trace> chains, std::size_t shortest) {
 /// Means, variances and autocovariances (divided by n at every lag) of chains of equal length.
 class Autocovariance {
 public:
-    explicit Autocovariance(std::span<const std::span<const double>> chains) : length_(chains.front().size()) {
-        for (std::span<const double> chain : chains) {
-            Trace centred(chain.begin(), chain.end());
+    explicit Autocovariance(std::span<const Trace> chains) : length_(chains.front().size()) {
+        for (const Trace& chain : chains) {
+            Trace centred = chain;
             means_.push_back(mean(chain));
             for (double& x : centred) x -= means_.back();
             within_ += variance(chain) / static_cast<double>(chains.size());
@@ -61,22 +61,6 @@ private:
     double within_ = 0;
     double total_ = 0;
 };
-
-double integratedTime(std::span<const std::span<const double>> chains) {
-    const Autocovariance autocovariance(chains);
-    const std::size_t n = autocovariance.length();
-    const auto draws = static_cast<double>(n * chains.size());
-    if (autocovariance.isConstant()) return draws;
-    double sum = 0;
-    double previous = std::numeric_limits<double>::infinity();
-    for (std::size_t lag = 0; lag + 1 < n; lag += 2) {
-        const double pair = autocovariance.correlation(lag) + autocovariance.correlation(lag + 1);
-        if (pair <= 0) break;
-        previous = std::min(previous, pair);
-        sum += previous;
-    }
-    return std::max(2 * sum - 1, 1 / std::log10(draws));
-}
 
 /// Each chain cut into its first and second half; the middle value of an odd length is left out.
 std::vector<Trace> splitInHalves(std::span<const Trace> chains) {
@@ -165,7 +149,9 @@ void rankNormalise(const std::vector<Draw>& order, const NormalScores& scores) {
 /// √(base + B / W) with the degenerate cases in place.
 double scaleReduction(double base, double between, double within) {
     if (between == 0) return 1;
-    return within == 0 ? std::numeric_limits<double>::infinity() : std::sqrt(base + between / within);
+    // Of values that are all the same, the variance may be what rounding leaves.
+    constexpr double kRounding = 1e-24;
+    return within <= kRounding * between ? std::numeric_limits<double>::infinity() : std::sqrt(base + between / within);
 }
 
 double classicalRhat(std::span<const Trace> chains) {
@@ -181,18 +167,21 @@ double classicalRhat(std::span<const Trace> chains) {
 
 }  // namespace
 
-double autocorrelationTime(std::span<const double> trace) {
-    if (trace.size() < 4) {
-        fail(ExitCode::InvalidConfig, "autocorrelation time: expected a trace of at least 4 values, found {}",
-             trace.size());
-    }
-    return integratedTime({&trace, 1});
-}
-
-double effectiveSampleSize(std::span<const Trace> chains) {
+double autocorrelationTime(std::span<const Trace> chains) {
     requireTraces(chains, 4);
-    const std::vector<std::span<const double>> views(chains.begin(), chains.end());
-    return static_cast<double>(chains.size() * chains.front().size()) / integratedTime(views);
+    const Autocovariance autocovariance(chains);
+    const std::size_t n = autocovariance.length();
+    const auto draws = static_cast<double>(n * chains.size());
+    if (autocovariance.isConstant()) return draws;
+    double sum = 0;
+    double previous = std::numeric_limits<double>::infinity();
+    for (std::size_t lag = 0; lag + 1 < n; lag += 2) {
+        const double pair = autocovariance.correlation(lag) + autocovariance.correlation(lag + 1);
+        if (pair <= 0) break;
+        previous = std::min(previous, pair);
+        sum += previous;
+    }
+    return std::max(2 * sum - 1, 1 / std::log10(draws));
 }
 
 double splitRhat(std::span<const Trace> chains) {

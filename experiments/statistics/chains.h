@@ -10,15 +10,13 @@ namespace ulam::statistics {
 
 using Trace = std::vector<double>;
 
-/// Integrated autocorrelation time τ = 1 + 2 Σ ρ_t in steps, by Geyer's initial monotone sequence (Geyer 1992,
+/// Integrated autocorrelation time τ = 1 + 2 Σ ρ_t in draws, by Geyer's initial monotone sequence (Geyer 1992,
 /// "Practical Markov chain Monte Carlo", section 3.3): sums of adjacent pairs of ρ, cut at the first that is ≤ 0 and
-/// made non-increasing. At least 1 / log10(n), since negative correlations are estimated poorly; n for a trace that
-/// never moves. Costs O(n τ).
-double autocorrelationTime(std::span<const double> trace);
-
-/// Number of independent samples with the same variance of the mean, over all chains together. The autocorrelations are
-/// those of the mixture (Vehtari et al. 2021, eq. 10), so that chains which disagree count little.
-double effectiveSampleSize(std::span<const Trace> chains);
+/// made non-increasing. The ρ are those of the mixture of all chains (Vehtari et al. 2021, eq. 10), so that chains
+/// which disagree have a long time. The number N of all draws, divided by τ, is the effective sample size: the number
+/// of independent ones whose mean has the same variance. At least 1 / log10(N), since negative correlations are
+/// estimated poorly; N for chains that never move from one value. Costs O(N τ).
+double autocorrelationTime(std::span<const Trace> chains);
 
 /// Rank-normalised split R-hat, the larger of the bulk and the folded one (Vehtari et al. 2021, "Rank-normalization,
 /// folding, and localization: an improved R-hat"). For few long chains; 1 is good, above 1.01 is not. Infinite for

@@ -167,20 +167,19 @@ Finding reportMixing(const MutationCase& c, References& references) {
                             {"chains", chains},
                             {"steps_per_chain", c.work().mixingSteps},
                             {"coverage_of_lit_tiles", coverage(result.image, references(*place.scene))}};
-            Json scalars = mixing(result.statistics.traces, result.cpuSeconds, c.settings.threads);
+            const Json scalars = mixing(result.statistics.traces, result.cpuSeconds, c.settings.threads);
             std::string slowest;
             double longest = 0;
-            for (auto& [name, scalar] : scalars.items()) {
-                if (!scalar.is_object() || !scalar["ess"].is_number() || name == "feature") continue;
-                const double time = c.work().mixingSteps * double(chains) / scalar["ess"].get<double>();
-                scalar["autocorrelation_steps"] = time;
+            for (const auto& [name, scalar] : scalars.items()) {
+                if (!scalar.is_object() || name == "feature") continue;
+                const double time = scalar.at("integrated_autocorrelation_mutations").get<double>();
                 if (time > longest) longest = time, slowest = name;
             }
             if (place.scene == c.places.front().scene || finding.summary.empty())
                 finding.summary += fmt::format("{}{}: acceptance {:.0f} %, {} of {:.0f} steps, covers {:.0f} %", finding.summary.empty() ? "" : "; ",
                                                run.text, 100 * numbers["acceptance"].get<double>(), slowest, longest,
                                                100 * numbers["coverage_of_lit_tiles"].get<double>());
-            numbers["scalars"] = std::move(scalars);
+            numbers["scalars"] = scalars;
             finding.samples += uint64_t(*run.budget.mutations);
             finding.numbers[run.text] = std::move(numbers);
         }

@@ -176,9 +176,14 @@ class Frames(unittest.TestCase):
         for (cell, replicate), row in run.replicates.iterrows():
             result = json.loads((folder / "cells" / cell / f"r{replicate:03}" / "result.json").read_text())
             self.assert_fields(row, result, but=("replicate", "mixing", "traces"))
-            for scalar, fields in (result["mixing"] or {}).items():
-                if scalar != "draws_per_chain":
-                    self.assert_fields(run.mixing.loc[(cell, replicate, scalar)], fields)
+            mixing = result["mixing"] or {}
+            for scalar in {"raster_x", "raster_y", "log_target", "path_length", "feature"} & set(mixing):
+                row = run.mixing.loc[(cell, replicate, scalar)]
+                self.assert_fields(row, mixing[scalar])
+                self.assert_fields(row, mixing)
+                draws = result["chains"] * mixing["draws_per_chain"]
+                mutations = row["integrated_autocorrelation_mutations"]
+                np.testing.assert_allclose(row["ess"] * mutations, draws * mixing["mutations_per_draw"], rtol=1e-12)
         self.assertGreater(len(run.mixing), 0)
         means = run.replicates.groupby("cell")["relmse"].mean()
         for cell in summary["cells"]:

@@ -170,11 +170,12 @@ class Run:
     @cached_property
     def mixing(self) -> pd.DataFrame:
         """A row a cell, replicate and scalar of its chains: `split_rhat`, `nested_rhat`, `ess` (effective sample size),
-        `ess_per_second`; none for samplers without chains. Reads a file a replicate."""
+        `ess_per_second`, `integrated_autocorrelation_mutations` (of a chain) with `integrated_autocorrelation_bound` ("upper",
+        "lower" or null), `draws_per_chain`, `mutations_per_draw`; none for samplers without chains. Reads a file a replicate."""
         return self._frame(
             lambda cell: Cell(self, cell["cell"]).mixing_rows(),
             ["cell", "replicate", "scalar"],
-            "split_rhat nested_rhat ess ess_per_second",
+            "split_rhat nested_rhat ess ess_per_second integrated_autocorrelation_mutations integrated_autocorrelation_bound",
         )
 
     # ---- cells

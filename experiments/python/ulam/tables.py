@@ -81,9 +81,10 @@ def result_row(result: Object) -> Row:
 
 
 def mixing_rows(result: Object) -> Iterator[Row]:
-    for name, scalar in (result.get("mixing") or {}).items():
+    found = result.get("mixing") or {}
+    for name, scalar in found.items():
         if isinstance(scalar, dict):
-            yield {"replicate": result["replicate"], "scalar": name} | flat(scalar)
+            yield {"replicate": result["replicate"], "scalar": name} | flat(scalar) | flat(found)
 
 
 def leaves(value: Any, path: str = "") -> Iterator[tuple[str, Any]]:

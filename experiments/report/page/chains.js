@@ -226,14 +226,16 @@ class ChainFilm {
     }
 }
 
-/// R-hat and effective sample sizes of the run as result.json has them.
+/// R-hat, effective sample sizes and autocorrelation times of the run as result.json has them.
 function mixingTable(cell, chains) {
     const rows = Object.entries(chains.mixing ?? {}).filter(([, found]) => found && typeof found === "object");
     if (!rows.length) return null;
+    const time = "integrated_autocorrelation_mutations", bound = "integrated_autocorrelation_bound";
     const readableName = (name) => name.replace(/_/g, " ").replace("rhat", "R-hat").replace("ess", "ESS");
-    const columns = [...new Set(rows.flatMap(([, found]) => Object.keys(found)))].map((column) => ({
+    const columns = [...new Set(rows.flatMap(([, found]) => Object.keys(found)))].filter((column) => column !== bound).map((column) => ({
         title: readableName(column),
         value: ([, found]) => found[column],
+        ...(column === time && { show: ([, found]) => ({ upper: "≤ ", lower: "≥ " }[found[bound]] ?? "") + number(found[time]) }),
     }));
     return sortableTable(`mixing of ${cell.label} on ${cell.group.title}`, [
         { title: "scalar", names: true, value: ([scalar]) => readableName(scalar) },

@@ -77,7 +77,9 @@ def draws_traces(browser):
     )
     check(lines == 6, f"{lines} traces")
     table = browser.run("return document.querySelector(`${arguments[0]} table`).textContent", CHAINS)
-    check("R-hat" in table and "4.20" in table, f"the table of mixing says '{table}'")
+    for said in "R-hat", "4.20", "integrated autocorrelation mutations", "≥ 4321":
+        check(said in table, f"the table of mixing says '{table}', not '{said}'")
+    check("bound" not in table, f"the table of mixing has a column of signs: '{table}'")
 
 
 def plays_by_keyboard(browser):

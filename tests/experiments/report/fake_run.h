@@ -267,6 +267,13 @@ private:
                 {"winner", candidates[3]["values"]}};
     }
 
+    static Json trappedFeature() {
+        return {{"split_rhat", 4.2},
+                {"ess", 51.0},
+                {"integrated_autocorrelation_mutations", 4321.0},
+                {"integrated_autocorrelation_bound", "lower"}};
+    }
+
     /// What a replicate leaves beside its image: of bdpt the images of its techniques, of others their chains.
     void writeReplicate(const std::string& folder, const std::string& scene, const FakeSampler& sampler,
                         const Image& reference) {
@@ -282,12 +289,13 @@ private:
                        {"image_sha256", std::string(64, 'a')}};
         if (sampler.chains) {
             const Json scalars = {"raster_x", "raster_y", "log_target", "path_length", "feature"};
-            result.update({{"chains", 100},
-                           {"mutations", 2.4e6},
-                           {"normalization", 0.5},
-                           {"snapshots", Json::array({{{"mutations", 1.2e6}, {"image", "snapshots/s00.exr"}}})},
-                           {"mixing", {{"draws_per_chain", kDraws}, {"feature", {{"split_rhat", 4.2}, {"ess", 51.0}}}}},
-                           {"traces", {{"file", "chains.npy"}, {"chains", kChains}, {"draws", kDraws}, {"scalars", scalars}}}});
+            result.update(
+                {{"chains", 100},
+                 {"mutations", 2.4e6},
+                 {"normalization", 0.5},
+                 {"snapshots", Json::array({{{"mutations", 1.2e6}, {"image", "snapshots/s00.exr"}}})},
+                 {"mixing", {{"draws_per_chain", kDraws}, {"mutations_per_draw", 64}, {"feature", trappedFeature()}}},
+                 {"traces", {{"file", "chains.npy"}, {"chains", kChains}, {"draws", kDraws}, {"scalars", scalars}}}});
             writeBytes(folder + "/chains.npy", chains(sampler));
             Image proposed(size_, size_, Rgb(100)), accepted(size_, size_);
             for (int y = 0; y < size_; ++y)
