@@ -211,10 +211,7 @@ void runExperiment(const RunArguments& a) {
         plan.experiment.erase("tune");  // experiment.json holds what was chosen, and can be run as it is
         tuned = outcome.record;
     }
-    if (slurm) {
-        writeHeader(plan, options);
-        return printJobs(submitMissing(plan, options, *slurm, a.workOptions), options.runDir, a);
-    }
+    if (slurm) return printJobs(submitMissing(plan, options, *slurm, a.workOptions, progress), options.runDir, a);
     const RunOutcome outcome = runPlan(plan, options, watchSignals(), progress);
     if (outcome.interrupted) failIfSignalled(kGoOn);
     if (outcome.reused > 0)
@@ -259,8 +256,11 @@ void addRunCommand(CLI::App& app) {
     a->threads = addThreadsOption(command);
     a->lease = addLeaseOption(command);
     addMemoryOption(command);
-    command.add_option("--jobs", a->jobs,
-                       "submit what is missing to Slurm and stop: slurm:KEY=VALUE,... with task-minutes and options of sbatch, as partition=short")
+    command
+        .add_option(
+            "--jobs", a->jobs,
+            "submit what is missing to Slurm and stop: slurm:KEY=VALUE,... with task-minutes and options of sbatch, as "
+            "partition=short; with --resume again, and for each look of \"until\"")
         ->type_name("slurm[:KEY=VALUE,...]");
     a->viewer = addViewerOption(command);
     command.add_flag("--keep-going", a->keepGoing,

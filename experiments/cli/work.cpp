@@ -9,6 +9,7 @@
 #include "experiments/engine/run_folder.h"
 #include "experiments/engine/signals.h"
 #include "experiments/engine/slurm.h"
+#include "experiments/engine/slurm_queue.h"
 #include "experiments/engine/worker.h"
 
 namespace ulam {
@@ -92,6 +93,30 @@ void printStatus(const Json& status) {
     fmt::print("{} replicates: {}\n", status["totals"]["replicates"].get<std::size_t>(), counts(status["totals"]));
 }
 
+/// "12_[0-4,7]", which scancel and scontrol understand.
+std::string tasksText(const std::string& job, const Json& tasks) {
+    std::vector<std::string> ranges;
+    for (std::size_t first = 0, next = 0; first < tasks.size(); first = next) {
+        for (next = first + 1; next < tasks.size() && tasks[next] == tasks[next - 1].get<std::size_t>() + 1;) ++next;
+        ranges.push_back(next == first + 1 ? tasks[first].dump() : tasks[first].dump() + "-" + tasks[next - 1].dump());
+    }
+    return fmt::format("{}_[{}]", job, fmt::join(ranges, ","));
+}
+
+void printQueue(const Json& jobs) {
+    for (const Json& array : jobs["arrays"]) {
+        const std::string job = array["job"];
+        fmt::print("job {}: {}, {} tasks, logs in {}\n", job, array["kind"].get<std::string>(),
+                   array["tasks"].get<std::size_t>(), array["folder"].get<std::string>());
+        for (const Json& group : array["states"]) {
+            const std::string reason = group["reason"];
+            fmt::print("{}{}: {}\n", group["state"].get<std::string>(), reason.empty() ? "" : " (" + reason + ")",
+                       tasksText(job, group["tasks"]));
+        }
+    }
+    for (const Json& trouble : jobs["trouble"]) fmt::print("{}\n", trouble.get<std::string>());
+}
+
 }  // namespace
 
 void addWorkCommand(CLI::App& app) {
@@ -113,16 +138,24 @@ void addWorkCommand(CLI::App& app) {
 void addStatusCommand(CLI::App& app) {
     auto folder = std::make_shared<std::string>();
     auto json = std::make_shared<bool>(false);
-    CLI::App& command = *app.add_subcommand(
-        "status", "what of a run is done, who works at what, what failed and why, and what is missing");
+    CLI::App& command = *app.add_subcommand("status",
+                                            "what of a run is done, who works at what, what failed and why, what is "
+                                            "missing, and what Slurm says of its jobs");
     command.add_option("run", *folder, "folder of the run")->type_name("RUN_DIR")->required();
     command.add_flag("--json", *json, "print all of it as JSON");
     command.callback([folder, json] {
-        const Json status = statusOfRun(*folder);
-        if (*json)
-            fmt::print("{}\n", dump(status));
-        else
+        Json status = statusOfRun(*folder);
+        if (!*json) {
             printStatus(status);
+            std::fflush(stdout);  // Slurm may take its time to answer
+        }
+        const Json jobs = statusOfJobs(*folder);
+        if (*json) {
+            if (!jobs.is_null()) status["slurm"] = jobs;
+            fmt::print("{}\n", dump(status));
+        } else if (!jobs.is_null()) {
+            printQueue(jobs);
+        }
     });
 }
 

@@ -25,14 +25,10 @@ void writeResolved(const Plan& plan, const fs::path& runDir) {
 
 RunOutcome runPlan(Plan& plan, const RunOptions& options, const std::atomic<bool>& interrupt, Progress& progress) {
     writeHeader(plan, options);
-    const auto whatUntilAdds = [&](const std::set<std::size_t>& withoutReference) -> std::vector<Plan::Replicate> {
-        if (!plan.until) return {};
-        const std::vector<int> done = plan.replicatesOfCells();
-        const int added = addReplicates(plan, options.runDir, withoutReference);
-        if (added == 0) return {};
-        writeResolved(plan, options.runDir);
-        progress.message(fmt::format("not decided yet: {} replicates more", added));
-        return plan.order(done);
+    const auto whatUntilAdds = [&](const std::set<std::size_t>& withoutReference) {
+        std::vector<Plan::Replicate> added = nextLook(plan, options.runDir, withoutReference, progress);
+        if (!added.empty()) writeResolved(plan, options.runDir);
+        return added;
     };
     return doWork(plan, options, interrupt, progress, whatUntilAdds);
 }

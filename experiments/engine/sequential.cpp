@@ -65,4 +65,13 @@ int addReplicates(Plan& plan, const std::filesystem::path& runDir, const std::se
     return added;
 }
 
+std::vector<Plan::Replicate> nextLook(Plan& plan, const std::filesystem::path& runDir,
+                                      const std::set<std::size_t>& without, Progress& progress) {
+    if (!plan.until) return {};
+    const std::vector<int> done = plan.replicatesOfCells();
+    if (const int added = addReplicates(plan, runDir, without); added > 0)
+        progress.message(fmt::format("not decided yet: {} replicates more", added));
+    return plan.order(done);
+}
+
 }  // namespace ulam

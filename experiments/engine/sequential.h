@@ -5,6 +5,7 @@
 #include <set>
 
 #include "experiments/engine/cell_errors.h"
+#include "experiments/engine/progress.h"
 
 namespace ulam {
 
@@ -14,5 +15,10 @@ namespace ulam {
 /// keeps undecided gets none, nor do cells `without` a reference (indices into Plan::references). Returns how many there
 /// are more.
 int addReplicates(Plan& plan, const std::filesystem::path& runDir, const std::set<std::size_t>& without = {});
+
+/// The next look of an experiment with "until", when all replicates so far are there: those that it adds to the plan,
+/// which it says. None of one without.
+std::vector<Plan::Replicate> nextLook(Plan& plan, const std::filesystem::path& runDir,
+                                      const std::set<std::size_t>& without, Progress& progress);
 
 }  // namespace ulam

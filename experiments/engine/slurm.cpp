@@ -1,12 +1,10 @@
 #include "experiments/engine/slurm.h"
 
-#include <sys/wait.h>
-
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <cstdio>
 #include <map>
+#include <optional>
 #include <sstream>
 
 #include "core/base/error.h"
@@ -17,6 +15,8 @@
 #include "experiments/engine/reference.h"
 #include "experiments/engine/replicate.h"
 #include "experiments/engine/result.h"
+#include "experiments/engine/sequential.h"
+#include "experiments/engine/slurm_queue.h"
 
 namespace ulam {
 namespace {
@@ -28,60 +28,12 @@ using Piece = std::pair<std::string, int>;  // name of a task of the plan, numbe
 /// Tasks of an array, at most: Slurm's own limit, and files that each task reads quickly.
 constexpr std::size_t kMostTasks = 1000;
 
-std::string shellQuoted(const std::string& text) {
-    std::string quoted = "'";
-    for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    return quoted + "'";
-}
-
-struct Output {
-    int code;
-    std::string text;  ///< of both streams
-};
-
-Output run(const std::vector<std::string>& command) {
-    std::string line;
-    for (const std::string& word : command) line += shellQuoted(word) + " ";
-    std::FILE* const pipe = ::popen((line + "2>&1").c_str(), "r");
-    if (!pipe) fail(ExitCode::InputMissing, "cannot start {}", command.front());
-    Output output{0, ""};
-    char block[4096];
-    while (const std::size_t count = std::fread(block, 1, sizeof block, pipe)) output.text.append(block, count);
-    const int status = ::pclose(pipe);
-    output.code = WIFEXITED(status) ? WEXITSTATUS(status) : 1;
-    while (output.text.ends_with('\n')) output.text.pop_back();
-    if (output.code == 127)
-        fail(ExitCode::InputMissing, "{} is no command here: are Slurm's commands installed?", command.front());
-    return output;
-}
-
-std::vector<std::string> linesOf(const std::string& text) {
-    std::vector<std::string> lines;
-    std::istringstream stream(text);
-    for (std::string line; std::getline(stream, line);) lines.push_back(line);
-    return lines;
-}
-
-fs::path jobsFolder(const fs::path& runDir) {
-    return runDir / "jobs";
-}
-
-/// The job arrays of a run so far.
-std::vector<fs::path> arrayFolders(const fs::path& runDir) {
-    std::vector<fs::path> folders;
-    std::error_code error;
-    for (fs::directory_iterator entry(jobsFolder(runDir), error); !error && entry != fs::directory_iterator();
-         entry.increment(error))
-        if (fs::exists(entry->path() / "job.json", error)) folders.push_back(entry->path());
-    return folders;
-}
-
 /// A folder that no other array has, also where several are submitted at once.
 fs::path newArrayFolder(const fs::path& runDir) {
-    makeFolder(jobsFolder(runDir));
+    makeFolder(runDir / "jobs");
     std::error_code error;
     for (int n = 1;; ++n) {
-        const fs::path folder = jobsFolder(runDir) / fmt::format("{:03}", n);
+        const fs::path folder = runDir / "jobs" / fmt::format("{:03}", n);
         if (fs::create_directory(folder, error)) return folder;
         if (error) fail(ExitCode::CannotWrite, "cannot make the folder {}: {}", folder.string(), error.message());
     }
@@ -101,27 +53,22 @@ struct Queue {
 /// What Slurm still has of the run's earlier arrays.
 Queue readQueue(const fs::path& runDir) {
     Queue queue;
-    const std::vector<fs::path> folders = arrayFolders(runDir);
-    if (folders.empty()) return queue;
-    const Output listed = run({"squeue", "--noheader", "--array", "--me", "--format=%F_%K"});
-    if (listed.code != 0) fail(ExitCode::InputMissing, "squeue does not tell what is in the queue: {}", listed.text);
-    const std::vector<std::string> lines = linesOf(listed.text);
-    const std::set<std::string> active(lines.begin(), lines.end());
-    for (const fs::path& folder : folders) {
-        const std::string job = JsonDocument::fromFile(folder / "job.json").root().at("job").string();
-        const Json array = JsonDocument::fromFile(folder / "tasks.json").json();
-        for (std::size_t i = 0; i < array["tasks"].size(); ++i) {
-            if (!active.contains(fmt::format("{}_{}", job, i))) continue;
-            queue.pieces.merge(piecesOf(array["tasks"][i]));
-            if (array["kind"] == "references") queue.referenceJobs.insert(job);
+    const std::vector<SubmittedArray> arrays = submittedArrays(runDir);
+    if (arrays.empty()) return queue;
+    const std::map<std::string, SlurmTask> known = askSqueue();
+    for (const SubmittedArray& array : arrays)
+        for (std::size_t i = 0; i < array.tasks.size(); ++i) {
+            const auto task = known.find(array.task(i));
+            if (task == known.end() || task->second.hasEnded()) continue;
+            queue.pieces.merge(piecesOf(array.tasks[i]));
+            if (array.kind == "references") queue.referenceJobs.insert(array.job);
         }
-    }
     return queue;
 }
 
 /// Slurm's MaxArraySize, which counts the numbers from 0.
 std::size_t largestArray() {
-    for (const std::string& line : linesOf(run({"scontrol", "show", "config"}).text)) {
+    for (const std::string& line : linesOf(slurmCommand({"scontrol", "show", "config"}).text)) {
         std::size_t size = 0;
         if (line.starts_with("MaxArraySize") && std::sscanf(line.c_str(), "MaxArraySize = %zu", &size) == 1)
             return std::clamp<std::size_t>(size, 1, kMostTasks);
@@ -131,18 +78,32 @@ std::size_t largestArray() {
 
 class Submission {
 public:
-    Submission(const Plan& plan, const RunOptions& options, const SlurmOptions& slurm,
+    Submission(Plan& plan, const RunOptions& options, const SlurmOptions& slurm,
                const std::vector<std::string>& workOptions)
         : plan_(plan), options_(options), slurm_(slurm), workOptions_(workOptions), queue_(readQueue(options.runDir)) {}
 
-    std::vector<JobArray> submit() {
+    std::vector<JobArray> submit(Progress& progress) {
         const Work references = missingParts();
         Work cells, timed;
-        for (const Plan::Replicate& next : plan_.order()) {
-            const Cell& cell = plan_.cells[next.cell];
-            if (isMissing(cell.task, next.number, cellFolder(options_.runDir, cell)))
-                (cell.task.budget.seconds ? timed : cells).push_back({&cell.task, next.number});
+        for (auto wanted = plan_.order(); !wanted.empty();) {
+            for (const Plan::Replicate& next : wanted) {
+                const Cell& cell = plan_.cells[next.cell];
+                const State state = stateOf(cell.task, next.number, cellFolder(options_.runDir, cell));
+                if (state == State::Missing || state == State::Failed)
+                    (cell.task.budget.seconds ? timed : cells).push_back({&cell.task, next.number});
+                mayLook_ &= state == State::Finished || (options_.keepGoing && state == State::Failed) ||
+                            withoutReference_.contains(cell.reference);
+            }
+            wanted.clear();
+            if (mayLook_) wanted = nextLook(plan_, options_.runDir, withoutReference_, progress);
         }
+        if (plan_.until)
+            progress.message(
+                mayLook_ ? "\"until\" asks for no more replicates"
+                         : "\"until\" looks at the errors when these replicates are there: then give this command "
+                           "again, with --resume");
+        // Only now: tasks that start in the meantime find the replicates that earlier looks have added.
+        writeHeader(plan_, options_);
         if (references.empty() && cells.empty() && timed.empty()) return {};
         largestArray_ = largestArray();
         estimate();
@@ -162,29 +123,45 @@ private:
     using Work = std::vector<std::pair<const Task*, int>>;
 
     /// Of references that are neither there nor in the cache.
-    Work missingParts() const {
+    Work missingParts() {
         Work missing;
-        for (const PlannedReference& reference : plan_.references) {
+        for (std::size_t i = 0; i < plan_.references.size(); ++i) {
+            const PlannedReference& reference = plan_.references[i];
             const fs::path folder = referenceFolder(reference, options_.runDir);
             makeFolder(folder);
+            const bool failed = recordedFailure(folder).has_value();
             forgetFailure(folder);
             const auto lease = Lease::claim(folder, options_.leaseSeconds);
             if (lease && prepareReference(reference, options_.runDir)) continue;
-            for (int part = readyParts(reference, options_.runDir); part < reference.task.replicates; ++part)
-                if (isMissing(reference.task, part, partsFolder(reference, options_.runDir)))
-                    missing.push_back({&reference.task, part});
+            if (options_.keepGoing && failed)
+                withoutReference_.insert(i);
+            else
+                mayLook_ = false;
+            bool finished = true;
+            for (int part = readyParts(reference, options_.runDir); part < reference.task.replicates; ++part) {
+                const State state = stateOf(reference.task, part, partsFolder(reference, options_.runDir));
+                finished &= state == State::Finished;
+                if (state == State::Missing || state == State::Failed) missing.push_back({&reference.task, part});
+            }
+            // Whoever made the last part did not come to combine them: who has that part to do will.
+            if (lease && finished) missing.push_back({&reference.task, reference.task.replicates - 1});
         }
         return missing;
     }
 
-    bool isMissing(const Task& task, int replicate, const fs::path& folder) const {
-        if (queue_.pieces.contains({task.name, replicate}) || finishedReplicate(task, replicate, folder)) return false;
+    enum class State { Finished, Awaited, Failed, Missing };
+
+    /// Awaited: in the queue, or held by a process. The traces of what is to be tried again are removed.
+    State stateOf(const Task& task, int replicate, const fs::path& folder) const {
+        if (queue_.pieces.contains({task.name, replicate})) return State::Awaited;
+        if (finishedReplicate(task, replicate, folder)) return State::Finished;
         const fs::path place = replicateFolder(folder, replicate);
         const auto holder = leaseHolder(place);
-        if (holder && !holder->expired) return false;
+        if (holder && !holder->expired) return State::Awaited;
+        const State state = recordedFailure(place) ? State::Failed : State::Missing;
         removeExpiredLeases(place);
         forgetFailure(place);
-        return true;
+        return state;
     }
 
     /// On as many processors as a task gets.
@@ -200,21 +177,11 @@ private:
 
     /// In tasks of about the same length, and arrays of as many as Slurm takes.
     void submit(const Work& work, const std::string& kind, const std::vector<std::string>& sbatch) {
-        double all = 0;
-        for (const auto& [task, replicate] : work) all += seconds_.at(task);
-        const double length = all / std::max(1.0, std::round(all / (60 * slurm_.taskMinutes)));
+        std::vector<double> seconds;
+        for (const auto& [task, replicate] : work) seconds.push_back(seconds_.at(task));
         std::vector<Work> tasks;
-        double end = 0, spent = 0;
-        for (const auto& piece : work) {
-            // A piece belongs to the task in whose time its middle lies.
-            const double seconds = seconds_.at(piece.first);
-            if (tasks.empty() || spent + 0.5 * seconds > end) {
-                tasks.emplace_back();
-                end = std::max(end, spent) + length;
-            }
-            tasks.back().push_back(piece);
-            spent += seconds;
-        }
+        for (const std::vector<std::size_t>& share : shareOut(seconds, 60 * slurm_.taskMinutes))
+            tasks.push_back(pick(work, share));
         for (std::size_t first = 0; first < tasks.size(); first += largestArray_)
             submitArray({tasks.begin() + std::ptrdiff_t(first),
                          tasks.begin() + std::ptrdiff_t(std::min(tasks.size(), first + largestArray_))},
@@ -247,7 +214,7 @@ private:
         command.insert(command.end(), sbatch.begin(), sbatch.end());
         command.insert(command.end(), slurm_.sbatch.begin(), slurm_.sbatch.end());
         command.push_back((folder / "job.sh").string());
-        const Output output = run(command);
+        const CommandOutput output = slurmCommand(command);
         if (output.code != 0) fail(ExitCode::Usage, "sbatch refuses the job: {}", output.text);
         const std::string answer = linesOf(output.text).back();  // "12" or "12;cluster", after warnings
         array.job = answer.substr(0, answer.find(';'));
@@ -276,11 +243,13 @@ exit $code
                            shellQuoted((folder / "tasks.json").string()), options);
     }
 
-    const Plan& plan_;
+    Plan& plan_;
     const RunOptions& options_;
     const SlurmOptions& slurm_;
     const std::vector<std::string>& workOptions_;
     Queue queue_;
+    bool mayLook_ = true;                     // all is there that a look at the errors waits for
+    std::set<std::size_t> withoutReference_;  // indices into the plan's references, of those that are not waited for
     std::size_t largestArray_ = kMostTasks;
     std::map<const Task*, double> seconds_;  // expected, of a replicate
     std::vector<JobArray> arrays_;
@@ -316,9 +285,43 @@ SlurmOptions parseSlurmOptions(const std::string& text) {
     return options;
 }
 
-std::vector<JobArray> submitMissing(const Plan& plan, const RunOptions& options, const SlurmOptions& slurm,
-                                    const std::vector<std::string>& workOptions) {
-    return Submission(plan, options, slurm, workOptions).submit();
+std::vector<std::vector<std::size_t>> shareOut(const std::vector<double>& seconds, double usual) {
+    struct Portion {
+        std::vector<std::size_t> pieces;
+        double seconds = 0;
+    };
+    std::vector<Portion> portions;
+    std::optional<std::size_t> open;  // which takes the next piece that is not long
+    for (std::size_t i = 0; i < seconds.size(); ++i) {
+        if (seconds[i] >= usual) {
+            portions.push_back({{i}, seconds[i]});
+            continue;
+        }
+        // A piece belongs to the portion in whose time its middle lies.
+        if (!open || portions[*open].seconds + seconds[i] / 2 > usual) {
+            open = portions.size();
+            portions.emplace_back();
+        }
+        portions[*open].pieces.push_back(i);
+        portions[*open].seconds += seconds[i];
+    }
+    if (open && portions[*open].seconds < usual * kShortestShare) {
+        const Portion rest = portions[*open];
+        portions.erase(portions.begin() + std::ptrdiff_t(*open));
+        const auto shortest = std::ranges::min_element(portions, {}, &Portion::seconds);
+        if (shortest != portions.end() && shortest->seconds + rest.seconds <= usual * kLongestShare)
+            shortest->pieces.insert(shortest->pieces.end(), rest.pieces.begin(), rest.pieces.end());
+        else
+            portions.push_back(rest);
+    }
+    std::vector<std::vector<std::size_t>> pieces;
+    for (Portion& portion : portions) pieces.push_back(std::move(portion.pieces));
+    return pieces;
+}
+
+std::vector<JobArray> submitMissing(Plan& plan, const RunOptions& options, const SlurmOptions& slurm,
+                                    const std::vector<std::string>& workOptions, Progress& progress) {
+    return Submission(plan, options, slurm, workOptions).submit(progress);
 }
 
 std::set<Piece> shareOfTask(const std::string& text) {

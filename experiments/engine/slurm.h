@@ -17,7 +17,7 @@
 namespace ulam {
 
 struct SlurmOptions {
-    double taskMinutes = 15;  ///< expected length of a task, as far as single replicates allow
+    double taskMinutes = 15;  ///< usual length of a task, see shareOut
     int cpusPerTask = 1;
     std::vector<std::string> sbatch;  ///< further options of sbatch: "--partition=short"
 };
@@ -33,11 +33,19 @@ struct JobArray {
     double seconds = 0;  ///< expected, of all tasks together
 };
 
-/// Submits what is neither finished, nor held by a process, nor waiting in the queue; what failed counts as missing.
-/// The header of the run must be there. `workOptions`: further arguments of `ulam work`. Fails with InputMissing where
-/// Slurm's commands cannot be run, and with Usage where sbatch refuses.
-std::vector<JobArray> submitMissing(const Plan& plan, const RunOptions& options, const SlurmOptions& slurm,
-                                    const std::vector<std::string>& workOptions);
+/// Shares of pieces of work that are expected to take `seconds` each, as indices into them: what the tasks of an array
+/// do. A share takes from kShortestShare to kLongestShare times `usual` seconds, more where it is a single piece that
+/// does, less where that is all there is, or all that is left beside pieces so long that it fits with none of them.
+std::vector<std::vector<std::size_t>> shareOut(const std::vector<double>& seconds, double usual);
+/// Of the usual 15 minutes: 5 and 30 minutes.
+inline constexpr double kShortestShare = 1.0 / 3, kLongestShare = 2;
+
+/// Writes the header of the run, and submits what is neither finished, nor held by a process, nor waiting in the queue;
+/// what failed counts as missing. Where all replicates so far are there (with keepGoing: or have failed), the looks of
+/// "until" come first, as in runPlan, and what they add to the plan is submitted. `workOptions`: further arguments of
+/// `ulam work`. Fails with InputMissing where Slurm's commands cannot be run, and with Usage where sbatch refuses.
+std::vector<JobArray> submitMissing(Plan& plan, const RunOptions& options, const SlurmOptions& slurm,
+                                    const std::vector<std::string>& workOptions, Progress& progress);
 
 /// What a task of a job array does: names of tasks of the plan and numbers of replicates. `text` is FILE:N, FILE a
 /// tasks.json.

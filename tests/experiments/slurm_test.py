@@ -192,6 +192,12 @@ class Slurm(unittest.TestCase):
     def queue(self):
         return self.cluster.call("squeue", "--noheader", "--array", "--format=%F_%K %T %N").splitlines()
 
+    def jobs(self):
+        """The states of all tasks, by kind of array, and what could not be asked."""
+        slurm = self.status()["slurm"]
+        return {array["kind"]: {(group["state"], group["reason"]): group["tasks"] for group in array["states"]}
+                for array in slurm["arrays"]}, slurm["trouble"]
+
     def renderers(self):
         """Processes that have a lease."""
         found = []
@@ -239,6 +245,43 @@ class Slurm(unittest.TestCase):
                 self.assertEqual(run[name], data, name)
         summaries = [tiny.without_times(json.loads(files["summary.json"])) for files in (alone, run)]
         self.assertEqual(*summaries)
+
+    def test_status_asks_the_queue_and_until_adds_to_it(self):
+        experiment = dict(tiny.EXPERIMENT, replicates=4, snapshots=0, samplers={"path": {"type": "path"}, "again": {"type": "path"}},
+                          until={"relative_ci": 0.001, "max_replicates": 8}, reference=dict(tiny.EXPERIMENT["reference"], budget={"spp": 4096}))
+        tiny.write_inputs(self.folder, experiment)
+        (held, _) = self.submit(jobs="slurm:hold")
+        states, trouble = self.jobs()
+        self.assertEqual(states, {"references": {("PENDING", "JobHeldUser"): [0]}, "cells": {("PENDING", "JobHeldUser"): [0]}})
+        self.assertEqual(trouble, [])
+        self.assertEqual(self.submit("--resume"), [])
+        for array in self.status()["slurm"]["arrays"]:
+            self.cluster.call("scontrol", "release", array["job"])
+        self.cluster.wait_for(lambda: not self.queue())
+        self.assertEqual(self.jobs()[0], {kind: {("COMPLETED", ""): [0]} for kind in ("references", "cells")})
+
+        # A look is due. The task of what it adds fails once, for it does not find what it should do.
+        (more,) = self.submit("--resume", jobs="slurm:hold")
+        self.assertEqual((more["kind"], more["replicates"]), ("cells", 8))
+        share = self.folder / "run/jobs/003/tasks.json"
+        hidden = share.rename(self.folder / "tasks.json")
+        self.cluster.call("scontrol", "release", more["job"])
+        self.cluster.wait_for(lambda: not self.queue())
+        hidden.rename(share)
+        self.assertEqual(self.status()["slurm"]["arrays"][2]["states"], [{"state": "FAILED", "reason": "NonZeroExitCode", "tasks": [0]}])
+        self.submit("--resume")
+        self.cluster.wait_for(lambda: not self.queue())
+        self.assertEqual(self.status()["totals"]["done"], 16)
+        self.assertEqual(self.submit("--resume"), [])
+
+        # The controller does not answer any more, and there is no accounting.
+        self.cluster.daemons[1].terminate()
+        self.cluster.daemons[1].wait()
+        process = self.ulam("status", "run")
+        self.assertIn("16 replicates: 16 done\n", process.out)
+        self.assertIn(f"UNKNOWN: {held['job']}_[0]\n", process.out)
+        self.assertIn("\nsqueue does not tell what becomes of the jobs: ", process.out)
+        self.assertIn("\nsacct does not tell what becomes of the jobs: ", process.out)
 
     def test_timed_cells_get_their_nodes_for_themselves(self):
         experiment = dict(tiny.EXPERIMENT, budget={"time": 0.2}, reference={"image": "lit.exr", "variance": "lit.exr"})
