@@ -21,7 +21,7 @@ EXPERIMENT = {
     "budget": {"time": SECONDS},
     "replicates": REPLICATES,
     "metrics": ["relmse"],
-    "reference": {"sampler": "bdpt", "budget": {"spp": 16}, "replicates": 4},
+    "reference": {"sampler": "bdpt", "budget": {"spp": 16}, "part": {"spp": 4}},
 }
 
 
