@@ -52,7 +52,8 @@ Json entryJson(const std::string& key) {
     Json entry = {{"key", key}, {"damage", damageOf(folder)}};
     if (!entry["damage"].get<std::string>().empty()) return entry;
     const Json result = JsonDocument::fromFile(folder / "result.json").json();
-    for (const char* field : {"scene", "scene_hash", "parameters", "budget", "replicates", "halves_agree", "wall_seconds"})
+    for (const char* field :
+         {"scene", "scene_hash", "parameters", "part", "replicates", "halves_agree", "wall_seconds"})
         entry[field] = result.value(field, Json());
     const Image image = readImage(folder / "image.exr");
     entry["width"] = image.width, entry["height"] = image.height;
@@ -78,10 +79,10 @@ void list(bool json) {
             continue;
         }
         bytes += entry["bytes"].get<double>();
-        fmt::print("{}  {} {} x {}, {} parts of {} in all, {}{}, {} old\n", entry["key"].get<std::string>(),
-                   entry["scene"].get<std::string>(), entry["width"].dump(), entry["height"].dump(), entry["replicates"].dump(),
-                   entry["budget"].dump(), sizeText(entry["bytes"]), entry["halves_agree"] == true ? "" : ", its halves disagree",
-                   durationText(entry["age_seconds"]));
+        fmt::print("{}  {} {} x {}, {} parts of {}, {}{}, {} old\n", entry["key"].get<std::string>(),
+                   entry["scene"].get<std::string>(), entry["width"].dump(), entry["height"].dump(),
+                   entry["replicates"].dump(), entry["part"].dump(), sizeText(entry["bytes"]),
+                   entry["halves_agree"] == true ? "" : ", its halves disagree", durationText(entry["age_seconds"]));
     }
     fmt::print("{} references, {}, in {}\n", all.size(), sizeText(bytes), referenceCache().string());
     if (damaged > 0) fmt::print("{} of them damaged: the next experiment that needs one makes it again\n", damaged);

@@ -53,14 +53,16 @@ fs::path defaultFolder(const std::string& name, bool last) {
     return folder(n);
 }
 
-/// Where the verdict cannot come out significant, whatever the errors.
-std::vector<std::string> replicateWarnings(const Plan& plan) {
+/// Where a bias would not be seen, or the verdict cannot come out significant, whatever the errors.
+std::vector<std::string> planWarnings(const Plan& plan) {
+    std::vector<std::string> warnings = sharedBiasWarnings(plan);
     const std::vector<double> p = plan.smallestAdjustedP();
-    if (p.empty() || *std::ranges::max_element(p) <= statistics::kFamilyLevel) return {};
-    return {fmt::format(
-        "too few replicates for a verdict, whatever the errors: of {} comparisons the smallest adjusted p that "
-        "can come out is {:.2g}, above {}; raise \"replicates\"",
-        p.size(), *std::ranges::max_element(p), statistics::kFamilyLevel)};
+    if (!p.empty() && *std::ranges::max_element(p) > statistics::kFamilyLevel)
+        warnings.push_back(fmt::format(
+            "too few replicates for a verdict, whatever the errors: of {} comparisons the smallest adjusted p that "
+            "can come out is {:.2g}, above {}; raise \"replicates\"",
+            p.size(), *std::ranges::max_element(p), statistics::kFamilyLevel));
+    return warnings;
 }
 
 /// What is planned and what it will cost: resolved.json with estimates.
@@ -73,12 +75,14 @@ Json plannedJson(const Plan& plan, const PlanEstimate& estimate) {
     for (std::size_t i = 0; i < plan.cells.size(); ++i)
         note(planned["cells"][i], estimate.cells[i], plan.cells[i].task.replicates);
     for (std::size_t i = 0; i < plan.references.size(); ++i)
-        if (plan.references[i].spec.kind == ReferenceSpec::Kind::Sampler)
-            note(planned["references"][plan.references[i].key], estimate.references[i],
-                 estimate.missingParts[i]);
+        if (plan.references[i].spec.kind == ReferenceSpec::Kind::Sampler) {
+            Json& reference = planned["references"][plan.references[i].key];
+            reference["missing_parts"] = estimate.missingParts[i];
+            note(reference, estimate.references[i], estimate.missingParts[i]);
+        }
     note(planned, estimate.total(plan), 1);
     planned["tried_cells"] = estimate.tried;
-    planned["warnings"] = replicateWarnings(plan);
+    planned["warnings"] = planWarnings(plan);
     return planned;
 }
 
@@ -110,7 +114,11 @@ void printDryRun(const Plan& plan, const std::optional<Tuning>& tuning, const Ru
     }
     for (const auto& [key, reference] : planned["references"].items())
         fmt::print("reference {}{}\n", key,
-                   reference.contains("estimated_seconds") ? "  " + durationText(reference["estimated_seconds"]) : "");
+                   reference.contains("missing_parts")
+                       ? fmt::format("  {} of {} parts of {} are missing, {}", reference["missing_parts"].dump(),
+                                     reference["replicates"].dump(), reference["budget"].dump(),
+                                     durationText(reference["estimated_seconds"]))
+                       : "");
     for (const Json& cell : planned["cells"])
         fmt::print("cell {}  {} replicates of {}, random keys from {}, {}, {}\n", cell["cell"].get<std::string>(),
                    cell["replicates"].dump(), cell["budget"].dump(), cell["random_keys"][0].dump(),
@@ -193,7 +201,7 @@ void runExperiment(const RunArguments& a) {
 
     if (a.resume) removeTemporaries(options.runDir);
     removeTemporaries(referenceCache(), Below::No);
-    std::vector<std::string> warnings = replicateWarnings(plan);
+    std::vector<std::string> warnings = planWarnings(plan);
     if (!lock.held())
         warnings.push_back(fmt::format("no lock on {}, where the file system has none: let one process write there",
                                        options.runDir.string()));

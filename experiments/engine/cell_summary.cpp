@@ -314,8 +314,9 @@ private:
         summary_.json["reference_too_poor"] = tooNoisy || !reference_.halvesAgree;
         if (tooNoisy)
             warnings_.push_back(
-                "the reference is too poor: its own variance is more than 10 % of the error, which cannot be judged; raise budget "
-                "and replicates of the reference by the same factor, and it is extended");
+                "the reference is too poor: its own variance is more than 10 % of the error, which cannot be judged; "
+                "raise the "
+                "reference's budget, and it is extended");
         if (!reference_.halvesAgree)
             warnings_.push_back("the two halves of the reference disagree: it needs a larger budget");
     }

@@ -68,7 +68,7 @@ public:
         if (!node.isObject()) node.expected("\"truth\", an EXR file, or an object with a sampler and a budget");
         const auto p = parseParameters<ReferenceParameters>(node, {});
         if (node.find("image")) {
-            for (const char* key : {"sampler", "budget", "replicates"})
+            for (const char* key : {"sampler", "budget", "part"})
                 if (const auto other = node.find(key))
                     other->fail("a reference is either an image or made by a sampler");
             readFile(node.at("image"), p.image, p.variance, spec);
@@ -82,8 +82,13 @@ public:
         spec.budget = parseBudget(p.budget);
         if (spec.budget.mutations && !sampler.chains)
             p.budget.at("mutations").fail("the reference's sampler has no chains");
-        spec.replicates = p.replicates;
-        if (spec.replicates % 2 != 0) node.at("replicates").expected("an even number");
+        if (node.find("part")) {
+            spec.part = parseBudget(p.part);
+            for (const auto& [one, other] : {std::pair(p.part, p.budget), std::pair(p.budget, p.part)})
+                for (const auto& [limit, value] : one.members())
+                    if (!other.find(limit))
+                        p.part.fail("a part of a reference has other limits than its budget", "give both the same");
+        }
         return spec;
     }
 

@@ -29,8 +29,7 @@ struct BudgetParameters {
 };
 
 struct ReferenceParameters {
-    JsonNode sampler, budget;
-    int replicates = 16;
+    JsonNode sampler, budget, part;
     std::string image, variance;
 
     template <class V>
@@ -38,9 +37,13 @@ struct ReferenceParameters {
         v("sampler", sampler,
           {.help = "sampler that makes the reference: a registered name, a name in samplers, or parameters",
            .example = R"("bdpt")"});
-        v("budget", budget, {.help = "of all replicates of the reference together", .example = R"({"spp": 16384})"});
-        v("replicates", replicates,
-          {.help = "independent runs, half of them in each of two halves that must agree", .min = 4, .max = 1024});
+        v("budget", budget,
+          {.help = "of all parts of the reference together, rounded up to an even number of at least 4; more extends it",
+           .example = R"({"spp": 16384})"});
+        v("part", part,
+          {.help = "what each of the independent parts may spend, by the same limits as the budget; without it "
+                   "64 samples or mutations a pixel, 640 rays a pixel, 2 s",
+           .example = R"({"spp": 64})"});
         v("image", image,
           {.help = "EXR file to take instead, relative to the experiment", .example = R"("references/plate.exr")"});
         v("variance", variance,
@@ -142,8 +145,8 @@ struct ExperimentParameters {
 struct ReferenceSpec {
     enum class Kind { Sampler, Truth, File } kind = Kind::Sampler;
     Json parameters;  ///< of the sampler, resolved
-    Budget budget;    ///< of all replicates together
-    int replicates = 0;
+    Budget budget;    ///< of all parts together, but for rounding
+    std::optional<Budget> part;  ///< what each may spend, of the same limits; none: the usual one
     std::filesystem::path image, variance;
     std::string where;  ///< in the experiment, for messages
 };

@@ -1,6 +1,8 @@
 #include "experiments/engine/plan.h"
 
 #include <chrono>
+#include <cmath>
+#include <limits>
 #include <numeric>
 #include <set>
 
@@ -17,6 +19,36 @@ namespace fs = std::filesystem;
 
 /// References do not depend on an experiment's seed, so that experiments can share them.
 constexpr std::uint64_t kReferenceSeed = 0x7265666572656e63;
+
+/// Parts of a reference: two in each half at least, and no more than a folder of replicates may have.
+constexpr double kFewestParts = 4, kMostParts = 10'000;
+
+/// What a part of a reference may spend where the experiment does not say. It does not depend on the whole budget, so
+/// that a larger one means more of the same parts.
+Budget usualPart(const Budget& whole, const Perspective& sensor) {
+    constexpr double kSeconds = 2, kUnitsAPixel = 64, kRaysAPixel = 640;
+    const double pixels = double(sensor.width()) * sensor.height();
+    Budget part;
+    if (whole.seconds) part.seconds = kSeconds;
+    if (whole.spp) part.spp = kUnitsAPixel;
+    if (whole.mutations) part.mutations = kUnitsAPixel * pixels;
+    if (whole.rays) part.rays = kRaysAPixel * pixels;
+    return part;
+}
+
+/// How many parts spend the budget of a reference, the first limit that they reach, or a little more: halves are equal.
+int partsOf(const ReferenceSpec& spec, const Budget& part) {
+    double parts = std::numeric_limits<double>::infinity();
+    for (const auto limit : {&Budget::seconds, &Budget::spp, &Budget::mutations, &Budget::rays})
+        if (part.*limit) parts = std::min(parts, *(spec.budget.*limit) / *(part.*limit));
+    parts = std::max(kFewestParts,
+                     2 * std::ceil(parts / 2 * (1 - 1e-12)));  // a quotient of decimals may be off by a rounding
+    if (parts > kMostParts)
+        fail(ExitCode::InvalidConfig,
+             "the reference at {} consists of {:g} parts of {}, expected at most {}; give larger ones in \"part\"",
+             spec.where, parts, budgetJson(part).dump(), kMostParts);
+    return static_cast<int>(parts);
+}
 
 /// How often the number of replicates can double before it reaches the most, the first look included.
 int looks(int replicates, int most) {
@@ -154,14 +186,10 @@ private:
                 task.scene = scene;
                 task.sampler = kind = spec.parameters["type"].get<std::string>();
                 task.parameters = spec.parameters;
-                task.replicates = spec.replicates;
+                task.budget = spec.part ? *spec.part : usualPart(spec.budget, *scene->scene.sensor);
+                task.replicates = partsOf(spec, task.budget);
                 task.maxDepth = e.maxDepth;
                 task.seed = kReferenceSeed;
-                const auto part = [&](const std::optional<double>& whole) {
-                    return whole ? std::optional(*whole / spec.replicates) : std::nullopt;
-                };
-                task.budget = {part(spec.budget.seconds), part(spec.budget.spp), part(spec.budget.mutations),
-                               part(spec.budget.rays)};
                 identity["task"] = task.hash();
                 identity["program"] = codeHash();  // another build may have another bug
                 break;
@@ -169,8 +197,12 @@ private:
         }
         reference.key = fmt::format("{}-{}", kind, sha256(identity.dump()).substr(0, 16));
         reference.task.name = reference.task.stream = reference.key;
-        for (std::size_t i = 0; i < plan_.references.size(); ++i)
-            if (plan_.references[i].key == reference.key) return i;
+        for (std::size_t i = 0; i < plan_.references.size(); ++i) {
+            PlannedReference& known = plan_.references[i];
+            if (known.key != reference.key) continue;
+            known.task.replicates = std::max(known.task.replicates, reference.task.replicates);
+            return i;
+        }
         plan_.references.push_back(std::move(reference));
         return plan_.references.size() - 1;
     }

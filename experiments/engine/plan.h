@@ -45,7 +45,7 @@ struct PlannedReference {
     std::string key;  ///< folder below references/
     ReferenceSpec spec;
     std::shared_ptr<const PlannedScene> scene;
-    Task task;  ///< where a sampler makes it: one replicate is a part of the whole
+    Task task;  ///< where a sampler makes it: one replicate is a part of the whole; of all who ask for it the most
 };
 
 /// A point of scenes × samplers × sweep.

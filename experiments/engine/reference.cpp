@@ -1,10 +1,14 @@
 #include "experiments/engine/reference.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
+#include <map>
 #include <numeric>
+#include <set>
 
 #include "core/base/file.h"
+#include "core/base/file_lock.h"
 #include "core/config/suggest.h"
 #include "core/image/image_io.h"
 #include "core/image/metrics.h"
@@ -40,15 +44,19 @@ void write(const PlannedReference& reference, const fs::path& folder, const Imag
 
 /// The cache is a convenience: where it cannot be written, the next run makes the reference again. An entry of fewer parts
 /// gives way.
-void fillCache(const fs::path& folder, const std::string& key, bool isBetter) {
-    if (!isBetter) return;
+void fillCache(const PlannedReference& reference, const fs::path& folder, int parts) {
+    const fs::path entry = referenceCache() / reference.key;
     const fs::path temporary = referenceCache() / temporaryName(), old = referenceCache() / temporaryName();
     std::error_code error;
     try {
         makeFolder(temporary);
         for (const char* file : kFiles) writeFileAtomically(temporary / file, readFile(folder / file));
-        fs::rename(referenceCache() / key, old, error);
-        fs::rename(temporary, referenceCache() / key, error);  // fails where another process was faster
+        // Of processes that extend one reference the one with most parts has the last word.
+        const FileLock lock = FileLock::await(referenceCache());
+        if (cachedParts(reference) < parts) {
+            fs::rename(entry, old, error);
+            fs::rename(temporary, entry, error);
+        }
     } catch (const Error&) {
     }
     fs::remove_all(temporary, error);
@@ -59,7 +67,7 @@ Json sharesJson(const Features& features, const std::vector<statistics::MeanEsti
     Json json = Json::object();
     for (std::size_t i = 0; i < shares.size(); ++i) {
         json[features.names[i]] = {{"mean", shares[i].mean}, {"variance_of_mean", shares[i].varianceOfMean}};
-        if (shares[i].varianceOfMean > 0) json[features.names[i]]["degrees"] = shares[i].degrees;
+        if (std::isfinite(shares[i].degrees)) json[features.names[i]]["degrees"] = shares[i].degrees;
     }
     return json;
 }
@@ -124,6 +132,10 @@ Reference load(const PlannedReference& reference, const fs::path& folder) {
         loaded.parts = static_cast<int>(result.at("replicates").integer());
     }
     loaded.featureShares = sharesFromJson(reference.scene->scene.features, result.at("feature_shares"));
+    // One value has no variance.
+    if (std::ranges::any_of(loaded.featureShares, [](const auto& share) { return share.degrees < 1; }))
+        loaded.featureShares.clear();
+    for (const JsonNode& bias : result.at("bias_ledger").elements()) loaded.biasLedger.push_back(bias.string());
     return loaded;
 }
 
@@ -152,6 +164,7 @@ void discard(const fs::path& folder) {
 /// is removed.
 void takeFromCache(const PlannedReference& reference, const fs::path& folder, int parts) {
     const fs::path cached = referenceCache() / reference.key;
+    const FileLock lock = FileLock::await(referenceCache());  // so that all files are of one entry
     const int found = cachedParts(reference);
     std::error_code ignored;
     if (found == 0) fs::remove_all(cached, ignored);
@@ -164,6 +177,7 @@ void writeTruth(const PlannedReference& reference, const fs::path& folder) {
     const Image image = *reference.scene->generator->truth(reference.scene->filmSize);
     write(reference, folder, image, Image(image.width, image.height),
           {{"kind", "truth"},
+           {"bias_ledger", Json::array()},
            {"feature_shares",
             sharesJson(reference.scene->scene.features, exactShares(reference.scene->generator->featureShares()))}});
 }
@@ -177,39 +191,25 @@ void writeFromFile(const PlannedReference& reference, const fs::path& folder) {
     write(reference, folder, image, variance,
           {{"kind", "file"},
            {"source", reference.spec.image.string()},
+           {"bias_ledger", Json::array()},
            {"feature_shares", sharesJson(features, companionShares(reference.spec.image, features))}});
 }
 
-/// Each part's shares of its own energy; parts without any light say nothing.
-std::vector<statistics::MeanEstimate> partShares(const std::vector<Json>& results, const Features& features) {
-    std::vector<std::vector<double>> shares(features.names.size());
-    for (const Json& result : results) {
-        std::vector<double> energies;
-        for (const std::string& name : features.names) energies.push_back(result.at("feature_energy").value(name, 0.0));
-        const auto own = exactShares(energies);
-        for (std::size_t i = 0; i < own.size(); ++i) shares[i].push_back(own[i].mean);
-    }
-    std::vector<statistics::MeanEstimate> estimates;
-    for (const auto& values : shares) {
-        if (values.size() < 2) return {};
-        estimates.push_back(statistics::estimateMean(values));
-    }
-    return estimates;
+/// A part's shares of its own energy; one without any light says nothing.
+void addShares(std::vector<statistics::MeanEstimate>& shares, const Json& result, const Features& features) {
+    std::vector<double> energies;
+    for (const std::string& name : features.names) energies.push_back(result.at("feature_energy").value(name, 0.0));
+    std::vector<double> own;
+    for (const auto& share : exactShares(energies)) own.push_back(share.mean);
+    addValues(shares, own);
 }
 
-/// Of the parts before and of new ones, by feature; where either knows nothing, what the other knows.
-std::vector<statistics::MeanEstimate> sharesTogether(const std::vector<statistics::MeanEstimate>& before,
-                                                     const std::vector<statistics::MeanEstimate>& added) {
-    if (before.empty() || added.empty()) return before.empty() ? added : before;
-    std::vector<statistics::MeanEstimate> all;
-    for (std::size_t i = 0; i < added.size(); ++i) all.push_back(statistics::combined(before[i], added[i]));
-    return all;
-}
-
-double total(const std::vector<Json>& results, const char* field) {
-    double sum = 0;
-    for (const Json& result : results) sum += result.at(field).get<double>();
-    return sum;
+void addBiases(std::vector<std::string>& ledger, const Json& result, const Scene& scene) {
+    const auto isIn = [](const std::vector<std::string>& known, const std::string& bias) {
+        return std::ranges::find(known, bias) != known.end();
+    };
+    for (const std::string bias : result.at("bias_ledger"))
+        if (!isIn(scene.substitutions, bias) && !isIn(ledger, bias)) ledger.push_back(bias);
 }
 
 }  // namespace
@@ -265,54 +265,75 @@ fs::path partsFolder(const PlannedReference& reference, const fs::path& runDir) 
 
 void finishReference(const PlannedReference& reference, const fs::path& runDir) {
     const fs::path folder = referenceFolder(reference, runDir);
-    const Features& features = reference.scene->scene.features;
-    CombinedParts before;
-    std::vector<statistics::MeanEstimate> sharesBefore;
-    std::vector<Json> results;  // what adds up: of the parts before, and of each that is new
+    const Scene& scene = reference.scene->scene;
+    CombinedParts combined;
+    std::vector<statistics::MeanEstimate> shares;
+    std::vector<std::string> biasLedger;
+    std::map<std::string, double> totals = {{"wall_seconds", 0}, {"rays", 0}, {"samples", 0}, {"mutations", 0}};
+    const auto addTotals = [&](const Json& result) {
+        for (auto& [field, sum] : totals) sum += result.at(field).get<double>();
+    };
     if (auto made = loadIntact(reference, folder)) {
         const JsonDocument document = JsonDocument::fromFile(folder / "result.json");
-        before = {made->parts, std::move(made->image), std::move(made->variance), halvesFromJson(document.root().at("halves"))};
-        sharesBefore = std::move(made->featureShares);
-        results.push_back(document.json());
+        combined = {made->parts, std::move(made->image), std::move(made->variance),
+                    halvesFromJson(document.root().at("halves"))};
+        shares = sharesFromJson(scene.features, document.root().at("feature_shares"));
+        biasLedger = std::move(made->biasLedger);
+        addTotals(document.json());
     }
-    std::vector<Image> images;
-    std::vector<Json> own;
-    for (int part = before.parts; part < reference.task.replicates; ++part) {
+    for (int part = combined.parts; part < reference.task.replicates; ++part) {
         std::string damage = "it is missing";
         auto finished = finishedReplicate(reference.task, part, partsFolder(reference, runDir), &damage);
         if (!finished) fail(ExitCode::InputMissing, "part {} of {} is lost: {}", part + 1, reference.key, damage);
         if (const auto pixels = finished->result.value("unsampled_pixels", 0); pixels > 0)
             fail(ExitCode::InvalidConfig,
-                 "{} pixels have no sample in part {} of the reference of scene {}: the budget of a reference is "
-                 "that of all its {} parts together; raise it",
-                 pixels, part + 1, reference.scene->name, reference.task.replicates);
-        own.push_back(std::move(finished->result));
-        images.push_back(std::move(finished->image));
+                 "{} pixels have no sample in part {} of the reference of scene {}, which may spend {}: give the "
+                 "reference "
+                 "larger parts in \"part\"",
+                 pixels, part + 1, reference.scene->name, budgetJson(reference.task.budget).dump());
+        combined.add(finished->image);
+        addShares(shares, finished->result, scene.features);
+        addBiases(biasLedger, finished->result, scene);
+        addTotals(finished->result);
     }
-    const CombinedParts combined = combineParts(images, before);
     if (std::ranges::all_of(combined.image.pixels, [](const Rgb& p) { return p == Rgb(0); }))
         fail(ExitCode::InvalidConfig,
              "no path carried light: the reference of scene {} is black. Is the camera inside a wall, or max_depth too "
              "small?",
              reference.scene->name);
-    const auto shares = sharesTogether(sharesBefore, partShares(own, features));
-    results.insert(results.end(), own.begin(), own.end());
     const double smallestP = combined.smallestP();
-    write(reference, folder, combined.image, combined.variance,
-          {{"kind", "sampler"},
-           {"parameters", reference.spec.parameters},
-           {"budget", budgetJson(reference.spec.budget)},
-           {"replicates", combined.parts},
-           {"halves_smallest_p", smallestP},
-           {"halves_agree", smallestP >= kHalvesLevel},
-           {"halves", halvesJson(combined)},
-           {"wall_seconds", total(results, "wall_seconds")},
-           {"rays", total(results, "rays")},
-           {"samples", total(results, "samples")},
-           {"mutations", total(results, "mutations")},
-           {"feature_shares", sharesJson(features, shares)}});
-    fillCache(folder, reference.key, cachedParts(reference) < combined.parts);
+    Json result = {{"kind", "sampler"},
+                   {"parameters", reference.spec.parameters},
+                   {"part", budgetJson(reference.task.budget)},
+                   {"replicates", combined.parts},
+                   {"halves_smallest_p", smallestP},
+                   {"halves_agree", smallestP >= kHalvesLevel},
+                   {"halves", halvesJson(combined)},
+                   {"bias_ledger", biasLedger},
+                   {"feature_shares", sharesJson(scene.features, shares)}};
+    result.update(totals);
+    write(reference, folder, combined.image, combined.variance, result);
+    fillCache(reference, folder, combined.parts);
     fs::remove_all(partsFolder(reference, runDir));
+}
+
+std::vector<std::string> sharedBiasWarnings(const Plan& plan) {
+    std::vector<std::string> warnings;
+    for (std::size_t i = 0; i < plan.references.size(); ++i) {
+        const ReferenceSpec& spec = plan.references[i].spec;
+        if (spec.kind != ReferenceSpec::Kind::Sampler) continue;
+        const Json& type = spec.parameters.at("type");
+        std::set<std::string> judged;
+        for (const Cell& cell : plan.cells)
+            if (cell.reference == i && cell.task.parameters.at("type") == type) judged.insert(cell.task.sampler);
+        if (judged.empty()) continue;
+        std::string warning = fmt::format(
+            "{}: the reference's sampler is of the same type, {}, as {}: a bias that they share would not be seen",
+            plan.references[i].scene->name, type.get<std::string>(), fmt::join(judged, ", "));
+        if (std::ranges::find(warnings, warning) == warnings.end())
+            warnings.push_back(std::move(warning));  // once for a sweep
+    }
+    return warnings;
 }
 
 Reference readReference(const PlannedReference& reference, const fs::path& runDir) {

@@ -1,7 +1,8 @@
 #pragma once
-// References: what images are compared with. A sampler makes one in independent parts of one budget, half of them in each of
-// two halves that must agree; the parts also give the variance of their mean, pixel by pixel. Asked for more parts of the
-// same budget, a reference is extended by those that are new.
+// References: what images are compared with. A sampler makes one in independent parts of one size, half of them in each
+// of two halves that must agree; the parts also give the variance of their mean, pixel by pixel. The key of a reference
+// says what a part is: scene, film, depth, sampler, its budget and the program; how many there are is the reference's
+// quality. Asked for more, it is extended by those that are new, and is then the same as if all had been made at once.
 
 #include "experiments/engine/plan.h"
 #include "experiments/engine/reference_parts.h"
@@ -16,6 +17,8 @@ struct Reference {
     int parts = 0;  ///< that a sampler made of it
     /// Share of each of the scene's features in the image's energy; empty where not known.
     std::vector<statistics::MeanEstimate> featureShares;
+    /// Known biases of the sampler that made it, in words; not those of the scene, which judged images have, too.
+    std::vector<std::string> biasLedger;
 };
 
 /// RUN_DIR/references/KEY
@@ -38,6 +41,9 @@ Reference readReference(const PlannedReference& reference, const std::filesystem
 
 /// Parts that the cache holds of it, undamaged.
 int cachedParts(const PlannedReference& reference);
+
+/// Of references whose sampler is of a type that they judge.
+std::vector<std::string> sharedBiasWarnings(const Plan& plan);
 
 /// $XDG_CACHE_HOME/ulam/references, or ~/.cache/ulam/references.
 std::filesystem::path referenceCache();

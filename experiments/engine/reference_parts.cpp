@@ -28,29 +28,6 @@ MeanEstimate single(double value) {
     return {value, 0, 0};
 }
 
-void addTiles(std::vector<MeanEstimate>& half, const std::vector<double>& tiles) {
-    for (std::size_t t = 0; t < tiles.size(); ++t) {
-        if (half.size() == t)
-            half.push_back(single(tiles[t]));
-        else
-            half[t] = statistics::combined(half[t], single(tiles[t]));
-    }
-}
-
-/// One channel of one pixel over all parts.
-MeanEstimate pixel(const std::vector<Image>& parts, const CombinedParts& before, std::size_t i, int channel) {
-    double sum = 0, squares = 0;
-    const auto n = static_cast<double>(parts.size());
-    for (const Image& part : parts) sum += part.pixels[i][channel];
-    for (const Image& part : parts) {
-        const double d = part.pixels[i][channel] - sum / n;
-        squares += d * d;
-    }
-    const MeanEstimate own{sum / n, n > 1 ? squares / ((n - 1) * n) : 0, n - 1};
-    if (before.parts == 0) return own;
-    return statistics::combined({before.image.pixels[i][channel], before.variance.pixels[i][channel], before.parts - 1.0}, own);
-}
-
 }  // namespace
 
 double CombinedParts::smallestP() const {
@@ -59,19 +36,29 @@ double CombinedParts::smallestP() const {
     return std::ranges::min(statistics::holmAdjusted(p));
 }
 
-CombinedParts combineParts(const std::vector<Image>& parts, const CombinedParts& before) {
-    CombinedParts combined = before;
-    for (const Image& part : parts) addTiles(combined.halves[static_cast<std::size_t>(combined.parts++ % 2)], tileMeans(part));
-    const Image& first = parts.front();
-    combined.image = combined.variance = Image(first.width, first.height);
-    for (std::size_t i = 0; i < first.pixels.size(); ++i) {
+void addValues(std::vector<MeanEstimate>& estimates, const std::vector<double>& values) {
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        if (estimates.size() == i)
+            estimates.push_back(single(values[i]));
+        else
+            estimates[i] = statistics::combined(estimates[i], single(values[i]));
+    }
+}
+
+void CombinedParts::add(const Image& part) {
+    addValues(halves[static_cast<std::size_t>(parts % 2)], tileMeans(part));
+    if (parts == 0) image = part, variance = Image(part.width, part.height);
+    // Rounded to what files hold after every part, not after the last one: so it does not matter which parts were
+    // combined first and read again. That is about 1e-7 of a value a part, far below the noise.
+    for (std::size_t i = 0; parts > 0 && i < part.pixels.size(); ++i) {
         for (int channel = 0; channel < 3; ++channel) {
-            const MeanEstimate all = pixel(parts, before, i, channel);
-            combined.image.pixels[i][channel] = static_cast<float>(all.mean);
-            combined.variance.pixels[i][channel] = static_cast<float>(all.varianceOfMean);
+            float &mean = image.pixels[i][channel], &ofMean = variance.pixels[i][channel];
+            const MeanEstimate all = statistics::combined({mean, ofMean, parts - 1.0}, single(part.pixels[i][channel]));
+            mean = static_cast<float>(all.mean);
+            ofMean = static_cast<float>(all.varianceOfMean);
         }
     }
-    return combined;
+    ++parts;
 }
 
 Json halvesJson(const CombinedParts& combined) {

@@ -1,6 +1,6 @@
 #pragma once
 // The independent parts a reference is made of, and what they amount to. Parts can be added to those that were combined
-// before, whose images are gone by then.
+// before, whose images are gone by then; what comes out is the same, bit by bit, as if all had been combined at once.
 
 #include <array>
 
@@ -19,12 +19,15 @@ struct CombinedParts {
     /// Mean luminance of every tile, row by row, in the half of the parts with even numbers and in the other one.
     std::array<std::vector<statistics::MeanEstimate>, 2> halves;
 
-    /// The smallest p over the tiles that the halves have one mean (Welch, Holm).
+    /// The next one, whose number is that of the parts so far.
+    void add(const Image& part);
+    /// The smallest p over the tiles that the halves have one mean (Welch, Holm). There must be at least two parts in
+    /// each half.
     double smallestP() const;
 };
 
-/// Of parts with the numbers from before.parts on. Together there must be at least two in each half.
-CombinedParts combineParts(const std::vector<Image>& parts, const CombinedParts& before = {});
+/// Combines each estimate with one value more; without estimates yet they are of one value each.
+void addValues(std::vector<statistics::MeanEstimate>& estimates, const std::vector<double>& values);
 
 /// [{"degrees", "mean": [...], "variance_of_mean": [...]} of each half]
 Json halvesJson(const CombinedParts& combined);

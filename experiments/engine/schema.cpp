@@ -122,11 +122,12 @@ Json referenceSchema() {
         for (const std::string& key : keys) schema["properties"][key] = all["properties"][key];
         return schema;
     };
-    Json image = with({"image", "variance"}, {"image"}), made = with({"sampler", "budget", "replicates"}, {"sampler", "budget"});
+    Json image = with({"image", "variance"}, {"image"}),
+         made = with({"sampler", "budget", "part"}, {"sampler", "budget"});
     image["properties"]["image"]["pattern"] = "\\.exr$";
-    made["properties"]["replicates"]["multipleOf"] = 2;
     refine(made, "sampler", anyOf({{{"type", "string"}, {"minLength", 1}}, reference("sampler")}));
     refine(made, "budget", reference("budget"));
+    refine(made, "part", reference("budget"));
     return anyOf({{{"type", "string"}, {"pattern", "^truth$|\\.exr$"}}, image, made});
 }
 

@@ -108,6 +108,7 @@ public:
                         {"primary_metric", plan_.metrics.front()},
                         {"metrics", constantsOf(plan_.metrics)}};
         compareAll(summary);
+        for (const std::string& warning : sharedBiasWarnings(plan_)) warn("{}", warning);
         Json cells = Json::array();
         for (const CellSummary& cell : cells_) {
             if (cell.errors.errors.empty()) continue;
@@ -152,6 +153,10 @@ private:
             if (!references.contains(cell.reference))
                 references.emplace(cell.reference, readReference(plan_.references[cell.reference], runDir_));
         }
+        for (const auto& [index, reference] : references)
+            if (!reference.biasLedger.empty())
+                warn("{}: the reference is biased: {}", plan_.references[index].scene->name,
+                     fmt::join(reference.biasLedger, "; "));
         cells_.resize(plan_.cells.size());  // comparisons find cells by their index
         std::mutex mutex;
         std::size_t begun = 0;

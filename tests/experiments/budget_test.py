@@ -34,7 +34,7 @@ COMMON = {
 SHORT = COMMON | {
     "snapshots": 1,
     "replicates": 100 if FULL else 25,
-    "reference": {"sampler": "bdpt", "budget": {"spp": 4}, "replicates": 4},
+    "reference": {"sampler": "bdpt", "budget": {"spp": 4}, "part": {"spp": 1}},
     "sweep": {
         "zip": {
             "film": [{"width": width, "height": width} for width in BUDGETS],
@@ -46,7 +46,7 @@ LONG = COMMON | {
     "film": {"width": 128, "height": 128},
     "budget": {"time": 10},
     "replicates": 8,
-    "reference": {"sampler": "bdpt", "budget": {"spp": 16}, "replicates": 4},
+    "reference": {"sampler": "bdpt", "budget": {"spp": 16}, "part": {"spp": 4}},
 }
 
 

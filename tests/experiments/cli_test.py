@@ -35,7 +35,7 @@ EXPERIMENT = {
     "replicates": 3,
     "snapshots": 1,
     "metrics": ["relmse"],
-    "reference": {"sampler": "bdpt", "budget": {"spp": 128}, "replicates": 4},
+    "reference": {"sampler": "bdpt", "budget": {"spp": 128}, "part": {"spp": 32}},
 }
 
 
@@ -76,9 +76,20 @@ class References(CliTest):
         entry, = json.loads(self.ulam("reference", "list", "--json").stdout)
         made = self.folder / "run/references" / entry["key"]
         self.assertEqual({**entry, "damage": ""}, entry)
-        self.assertEqual((entry["scene"], entry["width"], entry["replicates"]), ("wall", 16, 4))
+        self.assertEqual((entry["scene"], entry["width"], entry["replicates"], entry["part"]), ("wall", 16, 4, {"spp": 32}))
         self.assertEqual(entry["bytes"], sum(f.stat().st_size for f in made.iterdir()))
+        self.assertIn('4 parts of {"spp":32.0}', self.ulam("reference", "list").stdout)
         self.assertIn("1 references", self.ulam("reference", "list").stdout)
+
+        # A larger budget needs the rest, a smaller one nothing.
+        for spp, missing in (256, 4), (128, 0), (16, 0):
+            reference, = json.loads(self.ulam("run", "tiny.json", "--dry-run", "--json",
+                                              "--set", f"reference.budget.spp={spp}").stdout)["references"].values()
+            self.assertEqual(reference["missing_parts"], missing)
+            self.assertEqual(reference["estimated_seconds"] > 0, missing > 0)
+        self.ulam("run", "tiny.json", "-o", "better", "--quiet", "--set", "reference.budget.spp=256")
+        better, = json.loads(self.ulam("reference", "list", "--json").stdout)
+        self.assertEqual((better["key"], better["replicates"]), (entry["key"], 8))
 
         cached = self.folder / "cache/ulam/references" / entry["key"]
         image = (cached / "image.exr").read_bytes()

@@ -15,7 +15,7 @@ import tiny
 # Undecided between equal samplers, decided where one is worse: looks at 5, 10 and 15 replicates.
 EXPERIMENT = dict(tiny.EXPERIMENT, replicates=5, snapshots=0, until={"relative_ci": 0.001, "max_replicates": 15},
                   samplers={"path": {"type": "path"}, "again": {"type": "path"}, "light": {"type": "light"}},
-                  reference={"sampler": "path", "budget": {"spp": 4096}, "replicates": 4})
+                  reference={"sampler": "path", "budget": {"spp": 4096}, "part": {"spp": 1024}})
 
 COMMANDS = {
     "sbatch": 'echo >> numbers; wc -l < numbers',

@@ -117,7 +117,7 @@ class Memory(unittest.TestCase):
         (self.folder / "large.json").write_text(json.dumps({
             "scenes": {"box": {"type": "cornell_box"}}, "film": {"width": 4096, "height": 4096}, "max_depth": 3,
             "samplers": {"path": {"type": "path"}}, "baseline": "path", "budget": {"spp": 0.1}, "replicates": 2,
-            "metrics": ["relmse"], "reference": {"sampler": "path", "budget": {"spp": 0.1}, "replicates": 4}}))
+            "metrics": ["relmse"], "reference": {"sampler": "path", "budget": {"spp": 0.1}, "part": {"spp": 0.025}}}))
         code, peak, _, err = self.ulam("run", "large.json", "-o", "run", "--quiet", "--max-memory", "300M", "--threads", "2")
         self.assertEqual(code, 4, err)
         self.assertIn("--max-memory allows 300 MB", err)

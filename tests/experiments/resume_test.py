@@ -34,7 +34,7 @@ EXPERIMENT = {
     "replicates": 2,
     "snapshots": 0,
     "metrics": ["relmse"],
-    "reference": {"sampler": "bdpt", "budget": {"spp": 16}, "replicates": 4},
+    "reference": {"sampler": "bdpt", "budget": {"spp": 16}, "part": {"spp": 4}},
 }
 SCENE = {
     "type": "scene",

@@ -39,7 +39,7 @@ BASE = {
 VALUES = [0, 1, -1, 2, 0.5, 1e9, 1e30, "x", "", True, None, [], {}, [1], [0, 1, 2], {"type": "x"}, ["relmse"], ["psnr"], ["psnr", "relmse"], ["relmse", "psnr"]]
 # What a schema cannot know: names that stand elsewhere in the file, which files there are, what a sweep's values are for.
 BEYOND_SCHEMAS = ("unknown sampler of this experiment", "has no chains", "cannot read", "does not exist", "unknown scene",
-                  "the crop reaches beyond", "at least the", "intervals need", "needs a scene with features", "no parameter of a sampler", "two candidates", " at sweep ", " at tune.sweep ", " twice ", "no point of the sweep", "(/reference/sampler); Known")
+                  "the crop reaches beyond", "at least the", "intervals need", "needs a scene with features", "no parameter of a sampler", "two candidates", "other limits than its budget", "expected at most 10000; give larger ones", " at sweep ", " at tune.sweep ", " twice ", "no point of the sweep", "(/reference/sampler); Known")
 
 
 def changed(document, path, value):
@@ -65,7 +65,7 @@ def experiments(schema):
     definitions = schema["definitions"]
     places = [((name,), s) for name, s in schema["properties"].items()]
     for name, s in definitions["budget"]["properties"].items():
-        places += [(("budget", name), s), (("reference", "budget", name), s)]
+        places += [(("budget", name), s), (("reference", "budget", name), s), (("reference", "part", name), s)]
     places += [(("tune", name), s) for name, s in schema["properties"]["tune"]["properties"].items()]
     places += [(("until", name), s) for name, s in schema["properties"]["until"]["properties"].items()]
     film = schema["properties"]["film"]["properties"]

@@ -19,7 +19,7 @@ import tiny
 
 PROGRAMS = ["munged", "slurmctld", "slurmd", "sbatch", "squeue", "scontrol"]
 EXPERIMENT = dict(tiny.EXPERIMENT, budget={"spp": 20000}, replicates=4, sweep={"max_depth": [2, 3]},
-                  reference=dict(tiny.EXPERIMENT["reference"], budget={"spp": 20000}))
+                  reference=dict(tiny.EXPERIMENT["reference"], budget={"spp": 20000}, part={"spp": 5000}))
 
 CONFIGURATION = """
 ClusterName=ulam

@@ -33,7 +33,7 @@ EXPERIMENT = {
     "replicates": 2,
     "snapshots": 0,
     "metrics": ["relmse"],
-    "reference": {"sampler": "path", "budget": {"spp": 64}, "replicates": 4},
+    "reference": {"sampler": "path", "budget": {"spp": 64}, "part": {"spp": 16}},
 }
 
 

@@ -29,7 +29,7 @@ EXPERIMENT = {
     "replicates": 1000,  # until the test has seen enough
     "snapshots": 1,
     "metrics": ["relmse"],
-    "reference": {"sampler": "path", "budget": {"spp": 256}, "replicates": 4},
+    "reference": {"sampler": "path", "budget": {"spp": 256}, "part": {"spp": 64}},
 }
 # In the page: what the report in its frame shows, and how.
 REPORT = """const frame = document.querySelector("iframe:not(.coming)");

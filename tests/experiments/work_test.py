@@ -15,7 +15,7 @@ import unittest
 sys.path.append(str(pathlib.Path(__file__).resolve().parent.parent / "faults"))
 import tiny
 
-EXPERIMENT = dict(tiny.EXPERIMENT, replicates=6, reference=dict(tiny.EXPERIMENT["reference"], replicates=8))
+EXPERIMENT = dict(tiny.EXPERIMENT, replicates=6, reference=dict(tiny.EXPERIMENT["reference"], part={"spp": 8}))
 
 
 class Work(unittest.TestCase):
@@ -168,7 +168,7 @@ class Work(unittest.TestCase):
 
     def test_replicates_that_until_adds_are_shared_too(self):
         self.begin(dict(EXPERIMENT, replicates=4, samplers={"path": {"type": "path"}}, until={"relative_ci": 0.001, "max_replicates": 16},
-                        reference={"sampler": "path", "budget": {"spp": 4000}, "replicates": 8}))
+                        reference={"sampler": "path", "budget": {"spp": 4000}, "part": {"spp": 500}}))
         run = self.start(*tiny.run_arguments("--resume", "--lease", 2))
         self.wait_for(lambda: (self.folder / "run/run.lock").exists())
         worker = self.start(*self.work())

@@ -33,7 +33,7 @@ class Locks(unittest.TestCase):
             time.sleep(0.02)
 
     def test_one_run_in_a_folder(self):
-        first = self.start(*tiny.run_arguments("--set", "reference.budget.spp=1000000"))
+        first = self.start(*tiny.run_arguments("--set", "reference.part.spp=1000000"))
         self.wait_for(lambda: (self.folder / "run/provenance.json").exists())
         for more in ([], ["--resume"]):
             second = tiny.call(tiny.run_arguments(*more), self.folder)

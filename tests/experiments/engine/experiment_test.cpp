@@ -41,7 +41,8 @@ TEST_CASE("misspelt keys name the nearest one", "[experiment]") {
     CHECK(mentions(refusal("film.widht", 8), "did you mean \"width\"?"));
     CHECK(mentions(refusal("film.type", "hdrfil"), "hdrfilm"));
     CHECK(mentions(refusal("film.pixel_format", "rgb"), "film option"));
-    CHECK(mentions(refusal("reference.replicate", 4), "replicates"));
+    CHECK(mentions(refusal("reference.prt", 4), "part"));
+    CHECK(mentions(refusal("reference.part", {{"sp", 16}}), "spp"));
     CHECK(mentions(refusal("reference.sampler", "bdtp"), "bdpt"));
     CHECK(mentions(refusal("scenes.wall.wall.type", "rectangl"), "rectangle"));
 }
@@ -64,7 +65,7 @@ TEST_CASE("values of the wrong type or out of range say what was expected", "[ex
     refusal("metrics", {"relmse", "relmse"});
     refusal("reference", 3);
     refusal("reference", "reference.png");
-    refusal("reference.replicates", 5);
+    refusal("reference.part", {{"spp", 0}});
     refusal("sweep", {{"samplers.path.rr_depth", 3}});
 }
 
@@ -73,6 +74,9 @@ TEST_CASE("what does not fit together is refused", "[experiment]") {
     CHECK(mentions(refusal("samplers.path.max_depth", 4), "beside \"film\""));
     CHECK(mentions(refusal("metrics", {"psnr"}), "primary"));
     CHECK(mentions(refusal("reference", "truth"), "no closed form"));
+    CHECK(mentions(refusal("reference.part", {{"time", 1}}), "other limits than its budget"));
+    CHECK(mentions(refusal("reference.part", {{"spp", 32}, {"rays", 1000}}), "other limits than its budget"));
+    CHECK(mentions(refusal("reference.part.spp", 0.02), "12800 parts"));
     CHECK(mentions(refusal("until", {{"max_replicates", 2}}), "at least the 3"));
     CHECK(mentions(refusal("until", {{"relative_ci", 0}}), "relative_ci"));
     CHECK(mentions(refusal("sweep", {{"until", {nullptr}}}), "whole run"));
@@ -135,7 +139,7 @@ TEST_CASE("a reference may differ from scene to scene", "[experiment]") {
     experiment["scenes"]["other"]["lamp"]["emitter"]["radiance"] = 1;
     const Json made = experiment["reference"];
     experiment["reference"] = {{"wall", made}, {"other", made}};
-    experiment["reference"]["other"]["replicates"] = 4;
+    experiment["reference"]["other"]["part"]["spp"] = 64;
     const Plan plan = planOf(folder, experiment);
     REQUIRE(plan.references.size() == 2);
     CHECK(plan.references[0].task.replicates == 8);

@@ -27,6 +27,25 @@ std::vector<Image> noisyParts(double shift) {
     return parts;
 }
 
+CombinedParts combined(const std::vector<Image>& parts, CombinedParts before = {}) {
+    for (const Image& part : parts) before.add(part);
+    return before;
+}
+
+/// tinyExperiment with another budget of its reference, in parts of 32 samples a pixel.
+Plan planWithReference(const Folder& folder, double spp) {
+    Json experiment = tinyExperiment();
+    experiment["reference"]["budget"]["spp"] = spp;
+    return planOf(folder, experiment);
+}
+
+/// The stored reference, byte by byte, but for what it took.
+std::vector<std::string> contentOf(const fs::path& folder) {
+    Json result = JsonDocument::fromFile(folder / "result.json").json();
+    result.erase("wall_seconds");
+    return {readFile(folder / "image.exr"), readFile(folder / "variance.exr"), result.dump()};
+}
+
 fs::path writeTinyReference(const Folder& folder) {
     Image image(16, 16, Rgb(0.5f)), variance(16, 16, Rgb(1e-4f));
     writeExr(folder / "known.exr", image);
@@ -37,11 +56,11 @@ fs::path writeTinyReference(const Folder& folder) {
 }  // namespace
 
 TEST_CASE("parts give a mean and its variance", "[reference]") {
-    const CombinedParts combined = combineParts(noisyParts(0));
+    const CombinedParts parts = combined(noisyParts(0));
     double mean = 0, variance = 0;
-    for (std::size_t i = 0; i < combined.image.pixels.size(); ++i) {
-        mean += combined.image.pixels[i].x / double(combined.image.pixels.size());
-        variance += combined.variance.pixels[i].x / double(combined.image.pixels.size());
+    for (std::size_t i = 0; i < parts.image.pixels.size(); ++i) {
+        mean += parts.image.pixels[i].x / double(parts.image.pixels.size());
+        variance += parts.variance.pixels[i].x / double(parts.image.pixels.size());
     }
     // 512 pixels of the mean of 16 numbers of variance 1/12: standard errors 0.0032 and about 1.4e-4.
     CHECK(mean == Approx(1).margin(0.02));
@@ -49,8 +68,8 @@ TEST_CASE("parts give a mean and its variance", "[reference]") {
 }
 
 TEST_CASE("halves that differ in one tile are found", "[reference]") {
-    CHECK(combineParts(noisyParts(0)).smallestP() > kHalvesLevel);
-    CHECK(combineParts(noisyParts(0.1)).smallestP() < kHalvesLevel);
+    CHECK(combined(noisyParts(0)).smallestP() > kHalvesLevel);
+    CHECK(combined(noisyParts(0.1)).smallestP() < kHalvesLevel);
 }
 
 TEST_CASE("a reference is made in parts and cached across runs", "[reference]") {
@@ -139,62 +158,191 @@ TEST_CASE("what changes a reference changes its key", "[reference]") {
     CHECK(key("budget.spp", 7) == plain);
     CHECK(key("max_depth", 4) != plain);
     CHECK(key("film.height", 8) != plain);
-    CHECK(key("reference.budget.spp", 512) != plain);
-    CHECK(key("reference.replicates", 4) != plain);  // parts of twice the budget
+    CHECK(key("reference.sampler", "path") != plain);
+    CHECK(key("reference.budget.spp", 512) == plain);
+    CHECK(key("reference.part.spp", 64) != plain);
     CHECK(key("scenes.wall.lamp.emitter.radiance", 3) != plain);
 }
 
-TEST_CASE("parts that are combined later come to the same", "[reference]") {
-    const std::vector<Image> all = noisyParts(0.05), first(all.begin(), all.begin() + 6), rest(all.begin() + 6, all.end());
-    const CombinedParts once = combineParts(all), twice = combineParts(rest, combineParts(first));
-    CHECK(twice.parts == once.parts);
-    for (std::size_t i = 0; i < once.image.pixels.size(); ++i) {
-        CHECK(twice.image.pixels[i].x == Approx(once.image.pixels[i].x));
-        CHECK(twice.variance.pixels[i].x == Approx(once.variance.pixels[i].x).epsilon(1e-4));
+TEST_CASE("a budget says how many parts a reference has", "[reference]") {
+    const Folder folder;
+    const auto task = [&](const Json& budget, const Json& part = nullptr, const char* sampler = "bdpt") {
+        Json experiment = tinyExperiment();
+        experiment["reference"] = {{"sampler", sampler}, {"budget", budget}};
+        if (!part.is_null()) experiment["reference"]["part"] = part;
+        return planOf(folder, experiment).references.at(0).task;
+    };
+    // Rounded up to an even number of at least four.
+    for (const auto& [spp, parts] : {std::pair(1, 4), {128, 4}, {129, 6}, {250, 8}, {256, 8}, {257, 10}})
+        CHECK(task({{"spp", spp}}, {{"spp", 32}}).replicates == parts);
+    CHECK(task({{"spp", 4.2}}, {{"spp", 0.7}}).replicates == 6);  // 6.000000000000001 in binary
+    // The first limit that is reached counts.
+    CHECK(task({{"spp", 320}, {"time", 100}}, {{"spp", 32}, {"time", 1}}).replicates == 10);
+    CHECK(task({{"spp", 320}, {"time", 6}}, {{"spp", 32}, {"time", 1}}).replicates == 6);
+    // Usual parts do not depend on the whole.
+    const double pixels = 16 * 16;
+    const auto isOf = [&](const Task& found, const Json& part, int parts) {
+        CHECK(budgetJson(found.budget) == part);
+        CHECK(found.replicates == parts);
+    };
+    for (const int times : {4, 16, 1000}) {
+        isOf(task({{"spp", 64 * times}}), {{"spp", 64.0}}, times);
+        isOf(task({{"time", 2 * times}}), {{"time", 2.0}}, times);
+        isOf(task({{"rays", 640 * pixels * times}}), {{"rays", 640 * pixels}}, times);
+        isOf(task({{"mutations", 64 * pixels * times}}, nullptr, "mlt"), {{"mutations", 64 * pixels}}, times);
     }
-    CHECK(twice.smallestP() == Approx(once.smallestP()));
-    const JsonDocument stored = JsonDocument::fromText(halvesJson(twice).dump(), "halves");
-    CombinedParts read = twice;
-    read.halves = halvesFromJson(stored.root());
-    CHECK(read.smallestP() == twice.smallestP());
 }
 
-TEST_CASE("a reference is extended by the parts that are new", "[reference]") {
+TEST_CASE("a run that asks for several budgets of one reference makes the largest", "[reference]") {
     const Folder folder;
-    const Plan plan = planOf(folder, tinyExperiment());
-    runIn(folder, plan);
-    Json larger = tinyExperiment();
-    larger["reference"] = {{"sampler", "bdpt"}, {"budget", {{"spp", 512}}}, {"replicates", 16}};
-    const Plan more = planOf(folder, larger);
-    const PlannedReference &before = plan.references[0], &after = more.references[0];
-    REQUIRE(after.key == before.key);
-    CHECK(cachedParts(after) == 8);
-
-    CHECK_FALSE(prepareReference(after, folder / "other"));
-    CHECK(readyParts(after, folder / "other") == 8);
-    // Parts that are there are not made again, whatever has become of them: these numbers are theirs.
-    for (int part = 8; part < 16; ++part) {
-        static const std::atomic<bool> never = false;
-        REQUIRE(renderReplicate(after.task, part, partsFolder(after, folder / "other"), 1, never, {}));
+    Json experiment = tinyExperiment();
+    for (const Json& budgets : {Json{128, 512, 256}, Json{512, 128, 256}}) {
+        experiment["sweep"] = {{"reference.budget.spp", budgets}};
+        const Plan plan = planOf(folder, experiment);
+        REQUIRE(plan.references.size() == 1);
+        CHECK(plan.references[0].task.replicates == 16);
     }
-    finishReference(after, folder / "other");
-    const Reference extended = readReference(after, folder / "other");
-    CHECK(extended.parts == 16);
-    CHECK(cachedParts(after) == 16);
+}
 
-    // As if it had been made at once.
+TEST_CASE("parts that are combined later come to the same", "[reference]") {
+    const std::vector<Image> all = noisyParts(0.05);
+    const CombinedParts once = combined(all);
+    for (const std::ptrdiff_t first : {1, 4, 7, 15}) {
+        // Between the two it is stored and read.
+        CombinedParts stored = combined({all.begin(), all.begin() + first});
+        if (first > 1)
+            stored.halves = halvesFromJson(JsonDocument::fromText(dump(halvesJson(stored)), "halves").root());
+        const CombinedParts twice = combined({all.begin() + first, all.end()}, stored);
+        CHECK(twice.parts == once.parts);
+        CHECK(twice.image == once.image);
+        CHECK(twice.variance == once.variance);
+        CHECK(halvesJson(twice) == halvesJson(once));
+        CHECK(twice.smallestP() == once.smallestP());
+    }
+}
+
+TEST_CASE("a larger budget extends a reference, a smaller one takes what is there", "[reference]") {
+    const Folder folder;
+    const fs::path runDir = folder / "run";
+    const Plan small = planWithReference(folder, 256), large = planWithReference(folder, 512),
+               less = planWithReference(folder, 100);
+    const PlannedReference& wanted = large.references[0];
+    const fs::path made = referenceFolder(wanted, runDir), cached = referenceCache() / wanted.key;
+    REQUIRE(small.references[0].key == wanted.key);
+
+    CHECK(runIn(folder, small).parts == 8);
+    CHECK(cachedParts(wanted) == 8);
+    const auto eight = contentOf(made);
+
+    const auto extends = [&] {
+        CHECK_FALSE(isReady(wanted, runDir));
+        CHECK(runIn(folder, large).parts == 8);  // new ones
+        CHECK(readReference(wanted, runDir).parts == 16);
+        CHECK(cachedParts(wanted) == 16);
+        return contentOf(made);
+    };
+    std::vector<std::string> extended;
+    SECTION("in a run of its own") {
+        fs::remove_all(runDir);
+        extended = extends();
+    }
+    SECTION("in the run that had the smaller one") {
+        fs::remove_all(referenceCache());
+        extended = extends();
+    }
+    CHECK(extended != eight);
+    CHECK(contentOf(cached) == extended);
+
+    for (const Plan& plan : {less, small, large}) {
+        fs::remove_all(runDir);
+        CHECK(runIn(folder, plan).parts == 0);
+        CHECK(contentOf(made) == extended);
+        CHECK(contentOf(cached) == extended);
+    }
+
+    // Made at once it is the same, byte by byte.
+    fs::remove_all(runDir);
     fs::remove_all(referenceCache());
-    runIn(folder, more);
-    const Reference whole = readReference(after, folder / "run");
-    CHECK(whole.parts == 16);
-    for (std::size_t i = 0; i < whole.image.pixels.size(); ++i) {
-        CHECK(extended.image.pixels[i].x == Approx(whole.image.pixels[i].x));
-        CHECK(extended.variance.pixels[i].x == Approx(whole.variance.pixels[i].x).epsilon(1e-4));
-    }
+    CHECK(runIn(folder, large).parts == 16);
+    CHECK(contentOf(made) == extended);
+}
 
-    // Whoever asks for fewer gets the better one.
-    CHECK(prepareReference(before, folder / "third"));
-    CHECK(readReference(before, folder / "third").parts == 16);
+TEST_CASE("a reference that took longer does not replace a better one", "[reference]") {
+    const Folder folder;
+    const Plan small = planWithReference(folder, 256), large = planWithReference(folder, 512);
+    const PlannedReference& slow = small.references[0];
+    CHECK_FALSE(prepareReference(slow, folder / "slow"));
+    static const std::atomic<bool> never = false;
+    for (int part = 0; part < 8; ++part)
+        REQUIRE(renderReplicate(slow.task, part, partsFolder(slow, folder / "slow"), 1, never, {}));
+    runIn(folder, large);
+    finishReference(slow, folder / "slow");
+    CHECK(readReference(slow, folder / "slow").parts == 8);
+    CHECK(cachedParts(slow) == 16);
+}
+
+TEST_CASE("shares of features go on where they were", "[reference]") {
+    const Folder folder;
+    Json experiment = tinyExperiment();
+    experiment["scenes"] = {
+        {"emitter", {{"type", "grid_of_holes"}, {"holes", 2}, {"back", "emitter"}, {"thickness", 0}}}};
+    experiment["reference"]["part"]["spp"] = 8;
+    const auto shares = [&](double spp) {
+        experiment["reference"]["budget"]["spp"] = spp;
+        const Plan plan = planOf(folder, experiment);
+        runIn(folder, plan);
+        const fs::path made = referenceFolder(plan.references[0], folder / "run");
+        return JsonDocument::fromFile(made / "result.json").json().at("feature_shares");
+    };
+    const Json four = shares(32), eight = shares(64);
+    REQUIRE(four.size() == 4);
+    for (const auto& [name, share] : four.items()) CHECK(share.at("degrees") == 3);
+    for (const auto& [name, share] : eight.items()) CHECK(share.at("degrees") == 7);
+    fs::remove_all(folder / "run");
+    fs::remove_all(referenceCache());
+    CHECK(shares(64) == eight);
+}
+
+TEST_CASE("a reference by the type of sampler that it judges is told of", "[reference]") {
+    const Folder folder;
+    Json experiment = tinyExperiment();
+    const auto warnings = [&] { return sharedBiasWarnings(planOf(folder, experiment)); };
+    CHECK(warnings() == std::vector<std::string>{"wall: the reference's sampler is of the same type, bdpt, as bdpt: a "
+                                                 "bias that they share would not be seen"});
+    // Parameters and names make no other type of it.
+    experiment["samplers"] = {
+        {"short", {{"type", "bdpt"}, {"rr_depth", 3}}}, {"other", {{"type", "bdpt"}}}, {"mlt", {{"type", "mlt"}}}};
+    experiment["baseline"] = "mlt";
+    experiment["sweep"] = {{"samplers.short.rr_depth", {2, 3}}};
+    REQUIRE(warnings().size() == 1);
+    CHECK(mentions(warnings()[0], "as other, short:"));
+
+    experiment.erase("sweep");
+    experiment["samplers"] = {{"mlt", {{"type", "mlt"}}}};
+    for (const char* sampler : {"path", "bdpt"}) {
+        experiment["reference"]["sampler"] = sampler;
+        CHECK(warnings().empty());
+    }
+    writeTinyReference(folder);
+    experiment["reference"] = "known.exr";
+    CHECK(warnings().empty());
+}
+
+TEST_CASE("a reference knows the biases of its sampler, not those of the scene", "[reference]") {
+    const Folder folder;
+    Json experiment = tinyExperiment();
+    // Light tracing does not show what is seen in a mirror.
+    experiment["scenes"]["wall"]["mirror"] = {{"type", "sphere"}, {"radius", 0.5}, {"bsdf", {{"type", "conductor"}}}};
+    const auto ledger = [&](const char* sampler) {
+        experiment["reference"]["sampler"] = sampler;
+        const Plan plan = planOf(folder, experiment);
+        std::const_pointer_cast<PlannedScene>(plan.references[0].scene)->scene.substitutions = {"a substitution"};
+        runIn(folder, plan);
+        return readReference(plan.references[0], folder / "run").biasLedger;
+    };
+    CHECK(ledger("bdpt").empty());
+    REQUIRE(ledger("light").size() == 1);
+    CHECK(mentions(ledger("light")[0], "mirrors and glass"));
 }
 
 TEST_CASE("a file is a reference if its variance stands beside it", "[reference]") {
@@ -244,11 +392,12 @@ TEST_CASE("a generator's truth has no variance, and knows the features' shares",
 TEST_CASE("a reference with pixels that have no sample is refused", "[reference]") {
     const Folder folder;
     Json experiment = tinyExperiment();
-    experiment["reference"] = {{"sampler", "bdpt"}, {"budget", {{"spp", 3.75}}}, {"replicates", 4}};
+    experiment["reference"] = {{"sampler", "bdpt"}, {"budget", {{"spp", 3.75}}}, {"part", {{"spp", 0.9375}}}};
     const Plan plan = planOf(folder, experiment);
     const auto [code, message] = errorOf([&] { runIn(folder, plan); });
     CHECK(code == ExitCode::InvalidConfig);
     CHECK(mentions(message, "16 pixels have no sample in part 1"));
+    CHECK(mentions(message, "larger parts"));
 }
 
 TEST_CASE("a black reference is refused", "[reference]") {

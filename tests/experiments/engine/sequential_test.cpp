@@ -105,6 +105,7 @@ TEST_CASE("a poor reference is not waited for", "[sequential]") {
     const Folder folder;
     Json experiment = openQuestion(0.001);
     experiment["reference"]["budget"]["spp"] = 16;
+    experiment["reference"]["part"]["spp"] = 4;
     CHECK(replicatesAfter(folder, experiment).at("path") == 5);
 }
 

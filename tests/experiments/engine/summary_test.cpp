@@ -161,11 +161,27 @@ TEST_CASE("a reference worse than the images decides nothing and says so", "[sum
     Json experiment = tinyExperiment();
     experiment["budget"]["spp"] = 256;
     experiment["reference"]["budget"]["spp"] = 16;
+    experiment["reference"]["part"]["spp"] = 4;
     const Json summary = summaryOf(folder, experiment);
     for (const Json& cell : summary["cells"]) CHECK(cell["reference_too_poor"] == true);
     CHECK(summary["comparisons"][0]["verdict"] == "undecided");
     CHECK(mentions(summary["verdicts"][0], "too poor"));
     CHECK(mentions(summary["warnings"].dump(), "too poor"));
+}
+
+TEST_CASE("the summary tells of biases of the reference", "[summary]") {
+    const Folder folder;
+    Json experiment = tinyExperiment();
+    const Json plain = summaryOf(folder, experiment)["warnings"];
+    CHECK(mentions(plain.dump(), "of the same type, bdpt, as bdpt"));
+    CHECK_FALSE(mentions(plain.dump(), "is biased"));
+
+    const Folder other;
+    experiment["scenes"]["wall"]["mirror"] = {{"type", "sphere"}, {"radius", 0.5}, {"bsdf", {{"type", "conductor"}}}};
+    experiment["reference"]["sampler"] = "light";
+    const Json biased = summaryOf(other, experiment)["warnings"];
+    CHECK_FALSE(mentions(biased.dump(), "of the same type"));
+    CHECK(mentions(biased.dump(), "wall: the reference is biased: walks from the light cannot join mirrors"));
 }
 
 TEST_CASE("a poor reference is found out by metrics that are not debiased, too", "[summary]") {
@@ -174,6 +190,7 @@ TEST_CASE("a poor reference is found out by metrics that are not debiased, too",
     experiment["budget"]["spp"] = 256;
     experiment["metrics"] = Json::array({"mape"});
     experiment["reference"]["budget"]["spp"] = 16;
+    experiment["reference"]["part"]["spp"] = 4;
     const Json summary = summaryOf(folder, experiment);
     for (const Json& cell : summary["cells"]) CHECK(cell["reference_too_poor"] == true);
     CHECK(summary["comparisons"][0]["reference_too_poor"] == true);

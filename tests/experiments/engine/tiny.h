@@ -52,7 +52,7 @@ inline Json tinyExperiment() {
             {"replicates", 3},
             {"snapshots", 2},
             {"metrics", {"relmse", "flip"}},
-            {"reference", {{"sampler", "bdpt"}, {"budget", {{"spp", 256}}}, {"replicates", 8}}}};
+            {"reference", {{"sampler", "bdpt"}, {"budget", {{"spp", 256}}}, {"part", {{"spp", 32}}}}}};
 }
 
 /// Written to a file and planned from there, as the program does.

@@ -134,7 +134,7 @@ TEST_CASE("a candidate that fails loses its round", "[tuning]") {
 TEST_CASE("a reference by a sampler of the experiment stays that sampler", "[tuning]") {
     Json experiment = tunedExperiment();
     experiment["samplers"]["mine"] = {{"type", "bdpt"}};
-    experiment["reference"] = {{"wall", {{"sampler", "mine"}, {"budget", {{"spp", 64}}}, {"replicates", 4}}}};
+    experiment["reference"] = {{"wall", {{"sampler", "mine"}, {"budget", {{"spp", 64}}}}}};
     JsonDocument document = documentOf(experiment);
     const Tuning tuning = *plannedTuning(document);
     const Plan plan = makePlan(roundExperiment(document, tuning, 0, {0, 1}), "experiment.json");

@@ -27,7 +27,7 @@ DOOR = {
     "budget": {"spp": 16},
     "replicates": 4,
     "metrics": ["relmse"],
-    "reference": {"sampler": "bdpt", "budget": {"spp": 64}, "replicates": 4},
+    "reference": {"sampler": "bdpt", "budget": {"spp": 64}, "part": {"spp": 16}},
 }
 NOISY = {
     "name": "large",
@@ -45,7 +45,7 @@ NOISY = {
     "replicates": 2,
     "snapshots": 2,
     "metrics": ["relmse"],
-    "reference": {"sampler": "path", "budget": {"spp": 4}, "replicates": 4},
+    "reference": {"sampler": "path", "budget": {"spp": 4}, "part": {"spp": 1}},
 }
 
 
