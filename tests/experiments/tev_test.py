@@ -33,7 +33,7 @@ EXPERIMENT = {
     "replicates": 2,
     "snapshots": 0,
     "metrics": ["relmse"],
-    "reference": {"sampler": "path", "budget": {"spp": 64}, "part": {"spp": 16}},
+    "reference": {"sampler": "bdpt", "budget": {"spp": 64}, "part": {"spp": 16}},
 }
 
 

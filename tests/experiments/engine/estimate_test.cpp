@@ -27,7 +27,7 @@ TEST_CASE("the estimate of a time budget is the budget", "[estimate]") {
     CHECK(estimateReplicate(planOf(folder, experiment).cells[0].task, 1).seconds < 1);
 }
 
-TEST_CASE("replicates take the time and the space that was estimated", "[estimate]") {
+TEST_CASE("replicates take the time and the space that was estimated", "[estimate][speed]") {
     const Folder folder;
     Json experiment = tinyExperiment();
     experiment["samplers"] = {{"bdpt", {{"type", "bdpt"}}}, {"mlt", {{"type", "mlt"}}}};
@@ -47,7 +47,7 @@ TEST_CASE("replicates take the time and the space that was estimated", "[estimat
     }
 }
 
-TEST_CASE("of many cells some are tried", "[estimate]") {
+TEST_CASE("of many cells some are tried", "[estimate][speed]") {
     const Folder folder;
     Json experiment = tinyExperiment();
     experiment["snapshots"] = 0;
