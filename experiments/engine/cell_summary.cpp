@@ -315,8 +315,7 @@ private:
         if (tooNoisy)
             warnings_.push_back(
                 "the reference is too poor: its own variance is more than 10 % of the error, which cannot be judged; "
-                "raise the "
-                "reference's budget, and it is extended");
+                "raise the reference's budget, and it is extended");
         if (!reference_.halvesAgree)
             warnings_.push_back("the two halves of the reference disagree: it needs a larger budget");
     }

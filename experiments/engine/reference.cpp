@@ -288,8 +288,7 @@ void finishReference(const PlannedReference& reference, const fs::path& runDir) 
         if (const auto pixels = finished->result.value("unsampled_pixels", 0); pixels > 0)
             fail(ExitCode::InvalidConfig,
                  "{} pixels have no sample in part {} of the reference of scene {}, which may spend {}: give the "
-                 "reference "
-                 "larger parts in \"part\"",
+                 "reference larger parts in \"part\"",
                  pixels, part + 1, reference.scene->name, budgetJson(reference.task.budget).dump());
         combined.add(finished->image);
         addShares(shares, finished->result, scene.features);

@@ -140,7 +140,7 @@ private:
             bool finished = true;
             for (int part = readyParts(reference, options_.runDir); part < reference.task.replicates; ++part) {
                 const State state = stateOf(reference.task, part, partsFolder(reference, options_.runDir));
-                finished &= state == State::Finished;
+                finished &= state == State::Finished && !isQueued(reference.task, part);
                 if (state == State::Missing || state == State::Failed) missing.push_back({&reference.task, part});
             }
             // Whoever made the last part did not come to combine them: who has that part to do will.
@@ -149,12 +149,15 @@ private:
         return missing;
     }
 
+    bool isQueued(const Task& task, int replicate) const { return queue_.pieces.contains({task.name, replicate}); }
+
     enum class State { Finished, Awaited, Failed, Missing };
 
     /// Awaited: in the queue, or held by a process. The traces of what is to be tried again are removed.
     State stateOf(const Task& task, int replicate, const fs::path& folder) const {
-        if (queue_.pieces.contains({task.name, replicate})) return State::Awaited;
+        // Finished is finished, even where Slurm runs its task once more.
         if (finishedReplicate(task, replicate, folder)) return State::Finished;
+        if (isQueued(task, replicate)) return State::Awaited;
         const fs::path place = replicateFolder(folder, replicate);
         const auto holder = leaseHolder(place);
         if (holder && !holder->expired) return State::Awaited;

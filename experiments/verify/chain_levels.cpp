@@ -172,8 +172,8 @@ Finding reportMixing(const MutationCase& c, References& references) {
             double longest = 0;
             for (const auto& [name, scalar] : scalars.items()) {
                 if (!scalar.is_object() || name == "feature") continue;
-                const double time = scalar.at("integrated_autocorrelation_mutations").get<double>();
-                if (time > longest) longest = time, slowest = name;
+                const Json& time = scalar.at("integrated_autocorrelation_mutations");
+                if (time.is_number() && time > longest) longest = time, slowest = name;
             }
             if (place.scene == c.places.front().scene || finding.summary.empty())
                 finding.summary += fmt::format("{}{}: acceptance {:.0f} %, {} of {:.0f} steps, covers {:.0f} %", finding.summary.empty() ? "" : "; ",

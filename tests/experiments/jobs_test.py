@@ -74,13 +74,14 @@ class Jobs(unittest.TestCase):
         self.assertEqual(submitted, {"references": 4, "cells": 15})
         self.assertIn('"until" looks at the errors when these replicates are there', said)
         for job, reached in ((2, 5), (3, 10)):
-            # While a task is in the queue nothing is looked at, and what there is stays.
-            self.work()
-            self.queue(f"{job}_0|RUNNING|None")
+            # While a task has replicates to make nothing is looked at, and what there is stays; nor does it fall back to
+            # the first look where a task whose replicates are there is run once more.
+            self.queue(*(f"{n}_0|RUNNING|None" for n in range(1, job + 1)))
             submitted, said = self.submit("--resume")
             self.assertEqual(submitted, {})
             self.assertEqual(self.replicates(), {"path": reached, "again": reached, "light": 5})
             # One that has ended is in no queue, though squeue still knows it.
+            self.work()
             self.queue(f"{job}_0|COMPLETED|None")
             submitted, said = self.submit("--resume")
             self.assertEqual(submitted, {"cells": 10})

@@ -240,9 +240,10 @@ private:
         PathFactors unused;
         bool made = false, found = false;
         for (int attempt = 0; attempt < kTries && !found; ++attempt) {
-            const bool all = attempt % 2 != 0;
-            for (size_t m = all ? 0 : n - n % 4; m < (all ? 4 * original.size() : n - n % 4 + 4); ++m)
-                if (std::find(choices_.begin(), choices_.end(), m) == choices_.end()) number(m) = random();
+            for (size_t m = 0; m < 4 * original.size(); ++m) {
+                const bool drawn = attempt % 2 != 0 || m / 4 == n / 4;
+                if (drawn && std::find(choices_.begin(), choices_.end(), m) == choices_.end()) number(m) = random();
+            }
             number(n) = value;
             for (size_t b = 0; b < kFurtherBlocks; ++b) numbers_.push_back(random.nextBlock());
             if (map_(numbers_, other, unused)) made = true, found = couldBe(other);
