@@ -80,6 +80,14 @@ FileLock FileLock::await(const std::filesystem::path& folder) {
     return awaited;
 }
 
+std::optional<FileLock> FileLock::attempt(const std::filesystem::path& folder) {
+    FileLock attempted(openFile(folder, O_RDONLY | O_DIRECTORY));
+    const int error = attempted.held() ? lock(attempted.descriptor_, LOCK_EX | LOCK_NB) : 0;
+    if (error == EWOULDBLOCK) return std::nullopt;
+    if (error) return FileLock(-1);
+    return attempted;
+}
+
 FileLock::~FileLock() {
     if (!removed_.empty()) ::unlink(removed_.c_str());  // first: without the lock it may be another's
     if (descriptor_ >= 0) ::close(descriptor_);

@@ -2,6 +2,7 @@
 // Advisory locks between processes. The system releases them when the process ends, however it ends.
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -20,6 +21,8 @@ public:
     static FileLock claim(const std::filesystem::path& file, const std::string& what, LockFile released = LockFile::Stays);
     /// The lock of a folder, as soon as no other process has it. It leaves no file.
     static FileLock await(const std::filesystem::path& folder);
+    /// The lock of a folder; nothing where another process has it.
+    static std::optional<FileLock> attempt(const std::filesystem::path& folder);
 
     ~FileLock();
     FileLock(FileLock&& other) noexcept

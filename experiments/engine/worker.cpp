@@ -5,8 +5,10 @@
 #include <set>
 #include <thread>
 #include <type_traits>
+#include <utility>
 
 #include "core/base/error.h"
+#include "core/base/file_lock.h"
 #include "experiments/engine/lease.h"
 #include "experiments/engine/provenance.h"
 #include "experiments/engine/reference.h"
@@ -60,6 +62,16 @@ private:
     std::map<const Task*, std::pair<double, double>> spent_;  // seconds and replicates
     double done_ = 0;
 };
+
+/// Of this machine, held while a budget of time is rendered: two at once would be slower each. Nothing: another process
+/// has it.
+std::optional<FileLock> takeClock() {
+    std::error_code ignored;  // without the folder there is no lock
+    const fs::path temporary = fs::temp_directory_path(ignored);
+    const fs::path folder = temporary.empty() ? temporary : temporary / "ulam-clock";
+    fs::create_directory(folder, ignored);
+    return FileLock::attempt(folder);
+}
 
 enum class Step { Done, Elsewhere, Stopped };
 
@@ -232,6 +244,9 @@ private:
         if (isThere(task, replicate, folder)) return Step::Done;
         failIfFailed(place);
         if (interrupt_) return stopped();
+        const bool timed = task.budget.seconds.has_value();
+        const auto clock = timed ? takeClock() : std::nullopt;
+        if (timed && !clock) return waitsForClock(what);
         makeFolder(place);
         const auto lease = Lease::claim(place, options_.leaseSeconds);
         if (!lease) return Step::Elsewhere;
@@ -255,6 +270,13 @@ private:
         forgetFailure(place);
         report(0);
         return Step::Done;
+    }
+
+    Step waitsForClock(const std::string& what) {
+        if (!std::exchange(saidWaiting_, true))
+            progress_.message(
+                fmt::format("{} waits: another process on this machine renders for a budget of time", what));
+        return Step::Elsewhere;
     }
 
     Step stopped() {
@@ -340,7 +362,7 @@ private:
     std::vector<Plan::Replicate> replicates_;      // the same, of cells
     bool firstTime_ = true;
     int reused_ = 0, settled_ = 0;
-    bool warnedOfBuilds_ = false;
+    bool warnedOfBuilds_ = false, saidWaiting_ = false;
 };
 
 }  // namespace

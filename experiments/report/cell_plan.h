@@ -24,8 +24,10 @@ struct CellPlan {
 
     /// Of the median replicate, where there are replicates.
     std::filesystem::path folder() const { return replicates.at(median); }
+    /// Its sampler is of Markov chains.
+    bool hasChains() const { return result.is_object() && result.value("chains", 0.0) > 0; }
     /// The median replicate kept its chains.
-    bool hasChains() const { return result.is_object() && result.value("traces", Json()).is_object(); }
+    bool hasTraces() const { return result.is_object() && result.value("traces", Json()).is_object(); }
 };
 
 /// Null where there is no such file.

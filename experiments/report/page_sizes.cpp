@@ -101,7 +101,7 @@ PageSizes choosePageSizes(const std::vector<CellPlan>& plans, double room) {
     const Sizes full = sizesOf(plans);
     double chains = 0, chainBytes = 0;
     for (const CellPlan& plan : plans) {
-        if (!plan.hasChains()) continue;
+        if (!plan.hasTraces()) continue;
         ++chains;
         const Json& traces = plan.result["traces"];
         chainBytes += base64Size(kDrawBytes * traces.at("chains").get<double>() * traces.at("draws").get<double>());

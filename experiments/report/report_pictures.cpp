@@ -133,7 +133,7 @@ private:
     }
 
     void embedChains(const CellPlan& plan, Json& ids) {
-        if (!plan.hasChains()) return;
+        if (!plan.hasTraces()) return;
         const double draws = plan.result["traces"].at("draws").get<double>();
         const int most = int(sizes_.chainBytes / base64Size(kDrawBytes * std::max(1.0, draws)));
         auto chains = readChainData(plan.folder(), plan.result, most);

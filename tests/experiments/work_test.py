@@ -1,6 +1,8 @@
 #!/usr/bin/env python3
 """Several processes at one run: they share the work, take over from those that die, and leave what a single one leaves."""
 
+import contextlib
+import fcntl
 import json
 import os
 import pathlib
@@ -18,14 +20,23 @@ import tiny
 EXPERIMENT = dict(tiny.EXPERIMENT, replicates=6, reference=dict(tiny.EXPERIMENT["reference"], part={"spp": 8}))
 
 
+@contextlib.contextmanager
+def open_folder(folder):
+    descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
+    try:
+        yield descriptor
+    finally:
+        os.close(descriptor)
+
+
 class Work(unittest.TestCase):
     def setUp(self):
         temporary = tempfile.TemporaryDirectory(prefix="ulam-work-")
         self.addCleanup(temporary.cleanup)
         self.folder = pathlib.Path(temporary.name).resolve()
 
-    def start(self, *arguments):
-        process = tiny.start(arguments, self.folder)
+    def start(self, *arguments, variables=None):
+        process = tiny.start(arguments, self.folder, variables)
         self.addCleanup(process.communicate)
         self.addCleanup(process.kill)
         return process
@@ -132,6 +143,21 @@ class Work(unittest.TestCase):
         _, err = worker.communicate(timeout=60)
         self.assertEqual(worker.returncode, 0, err)
         self.compare()
+
+    def test_budgets_of_time_take_turns_on_a_machine(self):
+        tiny.write_inputs(self.folder, dict(EXPERIMENT, budget={"time": 0.05}, replicates=2))
+        (self.folder / "ulam-clock").mkdir()
+        with open_folder(self.folder / "ulam-clock") as clock:
+            fcntl.flock(clock, fcntl.LOCK_EX)
+            worker = self.start(*tiny.run_arguments(), variables={"TMPDIR": str(self.folder)})
+            self.wait_for(lambda: list(self.folder.glob("run/references/*/image.exr")))
+            time.sleep(1)  # enough for all of them
+            self.assertIsNone(worker.poll())
+            self.assertEqual(list(self.folder.glob("run/cells/*/r*")), [])
+        _, err = worker.communicate(timeout=60)
+        self.assertEqual(worker.returncode, 0, err)
+        self.assertEqual(err.count("waits: another process on this machine renders for a budget of time"), 1, err)
+        self.assertEqual(len(list(self.folder.glob("run/cells/*/r*/result.json"))), 4)
 
     def test_failures_are_told_and_not_tried_by_everybody(self):
         tiny.write_inputs(self.folder)
