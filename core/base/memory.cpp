@@ -46,6 +46,10 @@ std::string sizeText(double bytes) {
 
 void limitMemory(uint64_t bytes) { limit = bytes; }
 
+bool memoryIsLimited() {
+    return limit != std::numeric_limits<uint64_t>::max();
+}
+
 void requireMemory(const std::string& purpose, const MemoryNeeds& held, const MemoryNeeds& needed) {
     MemoryNeeds parts = held;
     parts.push_back({"the program and what else it holds", std::max(0.0, double(residentBytes()) - totalBytes(held)), ""});

@@ -27,6 +27,7 @@ std::string sizeText(double bytes);
 
 /// What requireMemory lets pass from now on; before, everything.
 void limitMemory(uint64_t bytes);
+bool memoryIsLimited();
 
 /// Called before memory is taken for `purpose`: `needed` comes to what is resident, of which `held` names parts. Fails with
 /// InvalidConfig where all together exceed the limit; the message has every part, the largest first.

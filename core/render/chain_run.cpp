@@ -52,6 +52,7 @@ struct ChainRun::Worker : StepObserver {
           film(r.context_.scene.sensor->width(), r.context_.scene.sensor->height(), r.context_.scene.filter),
           statistics(r.mix_.size()),
           featureEnergy(r.context_.scene.features.names.size()),
+          featureJumps(featureEnergy.size()),
           largeStepProbability(r.mix_.largeStepProbability()) {
         if (r.parameters_.acceptanceImages) states.emplace(film.width(), film.height());
     }
@@ -88,8 +89,9 @@ struct ChainRun::Worker : StepObserver {
         deposit(x, pending);
         pending = proposed;
         const uint32_t label = featureOf(y);
-        jumps += label != kNone && feature != kNone && label != feature;
-        if (label != kNone) feature = label;
+        if (label == kNone) return;
+        if (feature != kNone && label != feature) ++featureJumps[label];
+        feature = label;
     }
 
     /// The weight of one deposit of f/π, in units of b.
@@ -130,13 +132,13 @@ struct ChainRun::Worker : StepObserver {
         for (size_t i = 0; i < featureEnergy.size(); ++i) {
             featureEnergy[i].add(other.featureEnergy[i]);
             other.featureEnergy[i] = {};
+            featureJumps[i] += std::exchange(other.featureJumps[i], 0);
         }
-        jumps += std::exchange(other.jumps, 0);
         nullSteps += std::exchange(other.nullSteps, 0);
     }
     template <class Archive>
     void archive(Archive& a) {
-        a(film, nonFinite, statistics, featureEnergy, jumps, nullSteps);
+        a(film, nonFinite, statistics, featureEnergy, featureJumps, nullSteps);
         if (states) a(*states);
     }
 
@@ -148,9 +150,10 @@ struct ChainRun::Worker : StepObserver {
     NonFiniteLog nonFinite;
     std::vector<MutationStatistics> statistics;
     std::vector<FixedSum> featureEnergy;
+    std::vector<uint64_t> featureJumps;
     std::optional<StateCounts> states;
     double largeStepProbability;
-    uint64_t jumps = 0, nullSteps = 0;
+    uint64_t nullSteps = 0;
     // Of the chain at work:
     double pending = 0;          ///< weight its current state is still to be deposited with
     uint32_t feature = kNone;
@@ -205,8 +208,7 @@ std::vector<MemoryPhase> ChainRun::memory(const RunContext& context, const Chain
 
 bool ChainRun::prepare(const StopFunction& stop) {
     if (bootstrapGoal_ == 0) {
-        if (!growPilot(stop)) return false;
-        bootstrapGoal_ = planBootstrap();
+        if (!growPilot(stop) || !planBootstrap(stop)) return false;
     }
     if (deposit_ == Deposit::Kelemen && !weigh(pilotNumbers_, std::min(kPilot, bootstrapGoal_), stop, pilot_)) return false;
     if (!weigh(bootstrapNumbers_, bootstrapGoal_, stop, weights_)) return false;
@@ -268,46 +270,56 @@ bool ChainRun::growPilot(const StopFunction& stop) {
     }
 }
 
-/// Pilot samples and a few steps of trial chains tell how samples scatter and what samples and mutations cost.
-uint64_t ChainRun::planBootstrap() {
+/// Pilot samples and a few steps of trial chains tell how samples scatter and what samples and mutations cost. False
+/// where they were stopped.
+bool ChainRun::planBootstrap(const StopFunction& stop) {
     const double count = double(pilot_.size());
     const Cost sample{pilotSeconds_ / count, double(rays()) / count};
     const WeightMoments moments(pilot_);
-    const Cost mutation = moments.mean > 0 ? tryMutations() : sample;
-    const double mutationsPerSample = mutation.rays > 0 ? sample.rays / mutation.rays : 1;
+    const auto mutation = moments.mean > 0 ? tryMutations(stop) : sample;
+    if (!mutation) return false;
+    const double mutationsPerSample = mutation->rays > 0 ? sample.rays / mutation->rays : 1;
     const double square = context_.scene.filter.squareIntegral();
     plan_.emplace(moments, SeedingTask{.sampleCost = fractionOfBudget(sample, mutationsPerSample),
-                                       .mutationCost = fractionOfBudget(mutation, 1),
+                                       .mutationCost = fractionOfBudget(*mutation, 1),
                                        .pixels = double(workers_[0]->film.pixels()) * square * square,
                                        .chains = parameters_.chains});
-    return plan_->samples;
+    bootstrapGoal_ = plan_->samples;
+    return true;
 }
 
-/// Mean cost of a mutation, from short chains that start at pilot samples and leave nothing in the image.
-ChainRun::Cost ChainRun::tryMutations() {
+/// Mean cost of a mutation, from short chains that start at pilot samples and leave nothing in the image. Nothing where
+/// they were stopped; their rays do not count then, since a run that goes on makes them again.
+std::optional<ChainRun::Cost> ChainRun::tryMutations(const StopFunction& stop) {
     struct Blind : StepObserver {
         void observe(const Chain&, const Proposal&, const StepInfo&) override {}
     } blind;
     Random random(context_.key, kTrialStartStream, 0);
     const std::vector<Start> starts = drawStarts(pilot_, kTrialChains, random);
     std::vector<Chain> chains(kTrialChains);
+    const uint64_t raysOfPilot = rays();
     auto forEachChain = [&](const auto& work) {
-        forEachChunk(context_.workers, 0, kTrialChains, 1, neverStop,
-                     [&](int worker, uint64_t c, uint64_t) { work(*workers_[size_t(worker)], chains[c], starts[c]); });
+        const uint64_t end = forEachChunk(
+            context_.workers, 0, kTrialChains, 1, stop,
+            [&](int worker, uint64_t c, uint64_t) { work(*workers_[size_t(worker)], chains[c], starts[c]); });
+        if (end < kTrialChains) raysBefore_ -= rays() - raysOfPilot;
+        return end == kTrialChains;
     };
     std::atomic<uint64_t> started = 0;
-    forEachChain([&](Worker& w, Chain& chain, const Start& start) {
+    const bool allStarted = forEachChain([&](Worker& w, Chain& chain, const Start& start) {
         chain.index = kTrialStream + uint32_t(&chain - chains.data());
         started += startChain(w, pilotNumbers_, start, chain);
     });
+    if (!allStarted) return {};
     const uint64_t raysBefore = rays();
     const auto before = Clock::now();
-    forEachChain([&](Worker& w, Chain& chain, const Start&) {
+    const bool complete = forEachChain([&](Worker& w, Chain& chain, const Start&) {
         if (chain.x.splats.size() > 0)
             for (uint64_t i = 0; i < chunk(); ++i) step(w, chain, blind);
     });
+    if (!complete) return {};
     const double steps = std::max(1.0, double(started * chunk()));
-    return {secondsSince(before) / steps, double(rays() - raysBefore) / steps};
+    return Cost{secondsSince(before) / steps, double(rays() - raysBefore) / steps};
 }
 
 /// False where rounding lost the start.
@@ -451,7 +463,7 @@ void ChainRun::report(uint64_t units, RenderStatistics& s) {
     for (size_t i = 0; i < mix_.size(); ++i) s.mutationStatistics[mix_[i].name] = all.statistics[i];
     s.nonFinite = all.nonFinite;
     s.nonFinite.count("deposit", all.film.nonFinite());
-    s.featureJumps = all.jumps;
+    s.featureJumps = all.featureJumps;
     for (const FixedSum& e : all.featureEnergy) s.featureEnergy.push_back(units > 0 ? e.value() * bootstrap_.mean / double(units) : 0);
     for (const auto& slot : chains_) s.traces.push_back(slot->trace);
     s.diagnostics["pilot_samples"] = pilotSamples_;

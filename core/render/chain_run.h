@@ -73,9 +73,9 @@ private:
     void archive(Archive& a);
     bool weigh(const BootstrapNumbers& numbers, uint64_t last, const StopFunction& stop, std::vector<double>& weights);
     bool growPilot(const StopFunction& stop);
-    uint64_t planBootstrap();
+    bool planBootstrap(const StopFunction& stop);
     double fractionOfBudget(const Cost& cost, double units) const;
-    Cost tryMutations();
+    std::optional<Cost> tryMutations(const StopFunction& stop);
     bool startChain(Worker& worker, const BootstrapNumbers& numbers, const Start& start, Chain& chain);
     void seedChains();
     void step(Worker& worker, Chain& chain, StepObserver& observer);
@@ -99,7 +99,8 @@ private:
     WeightMoments bootstrap_;
     double pilotNormalization_ = 0;  ///< b from samples that seed nothing
     uint64_t pilotSamples_ = 0, seedsLost_ = 0;
-    uint64_t raysBefore_ = 0;  ///< traced before the run was restored
+    uint64_t raysBefore_ =
+        0;  ///< traced before the run was restored; less those of trials that were stopped, modulo 2⁶⁴
     std::atomic<bool> failed_ = false;  ///< a step threw; workers that wait for its chain give up
 };
 

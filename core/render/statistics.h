@@ -26,9 +26,10 @@ struct RenderStatistics {
     std::map<std::string, MutationStatistics> mutationStatistics;
     NonFiniteLog nonFinite;                     ///< samples and steps with values that were refused
     std::vector<std::string> biasLedger;        ///< every known source of bias of this run, in words
-    /// Energy (luminance) that passed each of the scene's features, and label changes of chains.
+    /// Of each of the scene's features: the energy (luminance) that passed it, and how often a chain came to it from
+    /// another one.
     std::vector<double> featureEnergy;
-    uint64_t featureJumps = 0;
+    std::vector<uint64_t> featureJumps;
     Json diagnostics = Json::object();          ///< further numbers of the sampler
     std::vector<ChainTrace> traces;             ///< of the chains
     std::map<std::string, Image> extraImages;   ///< e.g. per-technique images, by name

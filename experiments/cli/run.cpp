@@ -206,7 +206,7 @@ void runExperiment(const RunArguments& a) {
         warnings.push_back(fmt::format("no lock on {}, where the file system has none: let one process write there",
                                        options.runDir.string()));
     for (const auto& reference : plan.references)
-        for (const std::string& warning : reference.scene->scene.warnings)
+        for (const std::string& warning : reference.scene->warnings)
             warnings.push_back(reference.scene->name + ": " + warning);
     for (const std::string& warning : warnings) progress.message("warning: " + warning);
 

@@ -246,7 +246,7 @@ private:
     }
 
     void addFeatures() {
-        const Features& features = cell_.task.scene->scene.features;
+        const Features& features = cell_.task.scene->features;
         Json all = Json::object();
         std::vector<std::vector<double>> shares;
         std::vector<bool> dark;  // replicates without light in any feature have no shares
@@ -260,9 +260,12 @@ private:
             for (double& e : energy) e /= total;
             shares.push_back(std::move(energy));
         }
-        double jumps = 0, mutations = 0;
-        for (const Replicate& r : replicates_)
-            jumps += r.result.at("feature_jumps").get<double>(), mutations += r.result.at("mutations").get<double>();
+        double mutations = 0;
+        std::map<std::string, double> jumps;
+        for (const Replicate& r : replicates_) {
+            mutations += r.result.at("mutations").get<double>();
+            for (const auto& [name, count] : r.result.at("feature_jumps").items()) jumps[name] += count.get<double>();
+        }
         const auto found = statistics::featureShares(shares, reference_.featureShares);
         for (std::size_t f = 0; f < found.size(); ++f) {
             std::vector<double> column;
@@ -270,14 +273,15 @@ private:
             Json perReplicate = Json::array();
             for (std::size_t r = 0, lit = 0; r < dark.size(); ++r)
                 perReplicate.push_back(dark[r] ? Json() : Json(column[lit++]));
-            all[features.names[f]] = {{"share", found[f].share},
-                                      {"share_ci95", intervalOrNull(found[f].ci95)},
-                                      {"truth", found[f].truth ? Json(*found[f].truth) : Json()},
-                                      {"judged", found[f].judged},
-                                      {"p_adjusted", found[f].judged ? Json(found[f].pAdjusted) : Json()},
-                                      {"relative_sd", numberOrNull(statistics::coefficientOfVariation(column))},
-                                      {"jumps_per_million", mutations > 0 ? Json(1e6 * jumps / mutations) : Json()},
-                                      {"per_replicate", perReplicate}};
+            const std::string& name = features.names[f];
+            all[name] = {{"share", found[f].share},
+                         {"share_ci95", intervalOrNull(found[f].ci95)},
+                         {"truth", found[f].truth ? Json(*found[f].truth) : Json()},
+                         {"judged", found[f].judged},
+                         {"p_adjusted", found[f].judged ? Json(found[f].pAdjusted) : Json()},
+                         {"relative_sd", numberOrNull(statistics::coefficientOfVariation(column))},
+                         {"jumps_per_million", mutations > 0 ? Json(1e6 * jumps[name] / mutations) : Json()},
+                         {"per_replicate", perReplicate}};
             if (found[f].truth && !found[f].judged) ++unjudgedFeatures_;
             if (found[f].judged && found[f].pAdjusted < statistics::kFamilyLevel) ++wrongFeatures_;
         }
@@ -331,11 +335,11 @@ private:
         if (unjudgedFeatures_ > 0)
             warnings_.push_back(fmt::format(
                 "the brightness of {} of {} features scatters too much between runs to be tested with {} replicates",
-                unjudgedFeatures_, cell_.task.scene->scene.features.names.size(), replicates_.size()));
+                unjudgedFeatures_, cell_.task.scene->features.names.size(), replicates_.size()));
         if (wrongFeatures_ > 0)
             warnings_.push_back(
                 fmt::format("the brightness of {} of {} features is wrong (t over replicates, Holm, 5 %)",
-                            wrongFeatures_, cell_.task.scene->scene.features.names.size()));
+                            wrongFeatures_, cell_.task.scene->features.names.size()));
         std::uint64_t nonFinite = 0;
         int black = 0, unfinished = 0;
         for (const Replicate& r : replicates_) {

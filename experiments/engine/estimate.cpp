@@ -44,11 +44,14 @@ Budget scaled(const Budget& budget, double fraction) {
     return {{}, part(budget.spp), part(budget.mutations), part(budget.rays)};
 }
 
+double pixelsOf(const Task& task) {
+    return double(task.scene->filmSize.cropWidth) * task.scene->filmSize.cropHeight;
+}
+
 /// Samples or mutations that the limits of work allow.
 double unitsOf(const Task& task) {
     double units = std::numeric_limits<double>::infinity();
-    const Perspective& sensor = *task.scene->scene.sensor;
-    if (task.budget.spp) units = std::min(units, *task.budget.spp * sensor.width() * sensor.height());
+    if (task.budget.spp) units = std::min(units, *task.budget.spp * pixelsOf(task));
     if (task.budget.mutations) units = std::min(units, *task.budget.mutations);
     if (task.budget.rays) units = std::min(units, *task.budget.rays / kRaysPerUnit);
     return units;
@@ -98,8 +101,7 @@ double bytesOf(const fs::path& folder, const Task& task, const RenderResult& tri
 
 /// What a task's seconds and bytes are taken to be proportional to among cells of one sampler and scene.
 Cost sizeOf(const Task& task) {
-    const Perspective& sensor = *task.scene->scene.sensor;
-    return {limitsWork(task.budget) ? unitsOf(task) : *task.budget.seconds, double(sensor.width()) * sensor.height()};
+    return {limitsWork(task.budget) ? unitsOf(task) : *task.budget.seconds, pixelsOf(task)};
 }
 
 }  // namespace

@@ -25,9 +25,9 @@ constexpr double kFewestParts = 4, kMostParts = 10'000;
 
 /// What a part of a reference may spend where the experiment does not say. It does not depend on the whole budget, so
 /// that a larger one means more of the same parts.
-Budget usualPart(const Budget& whole, const Perspective& sensor) {
+Budget usualPart(const Budget& whole, const FilmSize& film) {
     constexpr double kSeconds = 2, kUnitsAPixel = 64, kRaysAPixel = 640;
-    const double pixels = double(sensor.width()) * sensor.height();
+    const double pixels = double(film.cropWidth) * film.cropHeight;
     Budget part;
     if (whole.seconds) part.seconds = kSeconds;
     if (whole.spp) part.spp = kUnitsAPixel;
@@ -136,8 +136,8 @@ private:
         if (known) return known;
         const auto start = std::chrono::steady_clock::now();
         const auto opened = folders_.find(scene.name);
-        const SceneDescription description =
-            SceneDescription::fromNode(scene.node, opened == folders_.end() ? e.folder : opened->second);
+        const fs::path folder = opened == folders_.end() ? e.folder : opened->second;
+        const SceneDescription description = SceneDescription::fromNode(scene.node, folder);
         auto planned = std::make_shared<PlannedScene>();
         planned->name = scene.name;
         planned->film = e.film;
@@ -154,22 +154,30 @@ private:
             }
         }
         planned->filmSize = description.filmSize(e.film);
-        planned->scene = description.build(e.film);
+        planned->build = [node = scene.node, folder, film = e.film] {
+            return SceneDescription::fromNode(node, folder).build(film);
+        };
+        const auto built = newScene([&] { return description.build(e.film); });
         planned->setupSeconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        planned->hash = built->hash;
+        planned->filter = built->filter;
+        planned->features = built->features;
+        planned->warnings = built->warnings;
+        planned->substitutions = built->substitutions;
         return known = planned;
     }
 
     std::size_t referenceFor(const ReferenceSpec& spec, const std::shared_ptr<const PlannedScene>& scene,
                              const Experiment& e) {
         PlannedReference reference{"", spec, scene, {}};
-        Json identity = {{"scene", scene->scene.hash}};
+        Json identity = {{"scene", scene->hash}};
         std::string kind;
         switch (spec.kind) {
             case ReferenceSpec::Kind::Truth:
                 if (!scene->generator || !scene->generator->truth({8, 8, 0, 0, 8, 8}))
                     fail(ExitCode::InvalidConfig, "no closed form of the image of scene {} is known at {}", scene->name,
                          spec.where);
-                if (scene->scene.filter.type() != ReconstructionFilter::Type::Box)
+                if (scene->filter.type() != ReconstructionFilter::Type::Box)
                     fail(ExitCode::InvalidConfig,
                          "the truth at {} is known for the box filter only; set \"rfilter\": {{\"type\": \"box\"}} in "
                          "\"film\"",
@@ -186,7 +194,7 @@ private:
                 task.scene = scene;
                 task.sampler = kind = spec.parameters["type"].get<std::string>();
                 task.parameters = spec.parameters;
-                task.budget = spec.part ? *spec.part : usualPart(spec.budget, *scene->scene.sensor);
+                task.budget = spec.part ? *spec.part : usualPart(spec.budget, scene->filmSize);
                 task.replicates = partsOf(spec, task.budget);
                 task.maxDepth = e.maxDepth;
                 task.seed = kReferenceSeed;
@@ -247,17 +255,10 @@ private:
 Json taskJson(const Task& task) {
     Json keys = Json::array();
     for (int r = 0; r < task.replicates; ++r) keys.push_back({task.key(r).low, task.key(r).high});
-    return {{"scene", task.scene->name},
-            {"scene_hash", task.scene->scene.hash},
-            {"sampler", task.sampler},
-            {"parameters", task.parameters},
-            {"budget", budgetJson(task.budget)},
-            {"max_depth", task.maxDepth},
-            {"replicates", task.replicates},
-            {"snapshots", task.snapshots},
-            {"seed", task.seed},
-            {"random_keys", std::move(keys)},
-            {"task_hash", task.hash()}};
+    return {{"scene", task.scene->name},      {"scene_hash", task.scene->hash},    {"sampler", task.sampler},
+            {"parameters", task.parameters},  {"budget", budgetJson(task.budget)}, {"max_depth", task.maxDepth},
+            {"replicates", task.replicates},  {"snapshots", task.snapshots},       {"seed", task.seed},
+            {"random_keys", std::move(keys)}, {"task_hash", task.hash()}};
 }
 
 }  // namespace
@@ -268,7 +269,7 @@ RandomKey Task::key(int replicate) const {
 
 std::string Task::hash() const {
     return sha256(Json{{"stream", stream},
-                       {"scene", scene->scene.hash},
+                       {"scene", scene->hash},
                        {"parameters", parameters},
                        {"budget", budgetJson(budget)},
                        {"max_depth", maxDepth},
@@ -332,11 +333,11 @@ Json Plan::resolved() const {
         json["reference"] = references[cell.reference].key;
         cellsJson.push_back(std::move(json));
         const PlannedScene& scene = *cell.task.scene;
-        scenesJson[scene.scene.hash] = {{"name", scene.name},
-                                        {"description", scene.description},
-                                        {"film", scene.film},
-                                        {"width", scene.scene.sensor->width()},
-                                        {"height", scene.scene.sensor->height()}};
+        scenesJson[scene.hash] = {{"name", scene.name},
+                                  {"description", scene.description},
+                                  {"film", scene.film},
+                                  {"width", scene.filmSize.cropWidth},
+                                  {"height", scene.filmSize.cropHeight}};
     }
     for (const PlannedComparison& c : comparisons)
         comparisonsJson.push_back({{"cell", cells[c.cell].task.name}, {"baseline", cells[c.baseline].task.name}});

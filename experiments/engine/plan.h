@@ -6,12 +6,13 @@
 
 #include "core/scene/load.h"
 #include "experiments/engine/experiment.h"
+#include "experiments/engine/scene_store.h"
 #include "experiments/engine/sweep.h"
 #include "experiments/statistics/design.h"
 
 namespace ulam {
 
-/// A scene as some cells see it: built, with the experiment's film.
+/// A scene as some cells see it, with the experiment's film. It was built once, to be checked.
 struct PlannedScene {
     std::string name;
     Json description;  ///< as written, a generator's defaults filled in
@@ -19,8 +20,14 @@ struct PlannedScene {
     Json source;  ///< how to get it again: see sceneSource
     std::shared_ptr<const Generator> generator;  ///< null for an ordinary scene
     FilmSize filmSize;
-    Scene scene;
+    ReconstructionFilter filter;
+    Features features;
+    std::string hash;
+    std::vector<std::string> warnings, substitutions;  ///< as Scene's
     double setupSeconds = 0;
+    BuildScene build;
+
+    std::shared_ptr<const Scene> scene() const { return sceneFor(hash, build); }
 };
 
 /// One algorithm on one scene with one budget: what is run in independent replicates.

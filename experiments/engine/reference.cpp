@@ -27,7 +27,7 @@ void write(const PlannedReference& reference, const fs::path& folder, const Imag
     makeFolder(folder);
     const ImageAttributes attributes = {{"ulam:version", programVersion()},
                                         {"ulam:scene", reference.scene->name},
-                                        {"ulam:scene_hash", reference.scene->scene.hash},
+                                        {"ulam:scene_hash", reference.scene->hash},
                                         {"ulam:sampler", reference.spec.parameters.dump()},
                                         {"ulam:seed", std::to_string(reference.task.seed)}};
     writeExr(folder / "image.exr", image, attributes);
@@ -35,7 +35,7 @@ void write(const PlannedReference& reference, const fs::path& folder, const Imag
     Json fields = {{"schema_version", 1},
                    {"key", reference.key},
                    {"scene", reference.scene->name},
-                   {"scene_hash", reference.scene->scene.hash},
+                   {"scene_hash", reference.scene->hash},
                    {"image_sha256", imageHash(image)},
                    {"variance_sha256", imageHash(variance)}};
     fields.update(result);
@@ -109,10 +109,10 @@ std::vector<statistics::MeanEstimate> companionShares(const fs::path& image, con
 }
 
 void checkSize(const PlannedReference& reference, const Image& image, const fs::path& file) {
-    const Perspective& sensor = *reference.scene->scene.sensor;
-    if (image.width != sensor.width() || image.height != sensor.height())
+    const FilmSize& film = reference.scene->filmSize;
+    if (image.width != film.cropWidth || image.height != film.cropHeight)
         fail(ExitCode::InvalidConfig, "{}: expected {} x {} pixels as of scene {}, found {} x {}", file.string(),
-             sensor.width(), sensor.height(), reference.scene->name, image.width, image.height);
+             film.cropWidth, film.cropHeight, reference.scene->name, image.width, image.height);
 }
 
 /// A stored reference. Fails, with UnreadableFile where it may yet be in order, where anything of it is missing, damaged, of another size or not what was written.
@@ -131,7 +131,7 @@ Reference load(const PlannedReference& reference, const fs::path& folder) {
         loaded.halvesAgree = result.at("halves_agree").boolean();
         loaded.parts = static_cast<int>(result.at("replicates").integer());
     }
-    loaded.featureShares = sharesFromJson(reference.scene->scene.features, result.at("feature_shares"));
+    loaded.featureShares = sharesFromJson(reference.scene->features, result.at("feature_shares"));
     // One value has no variance.
     if (std::ranges::any_of(loaded.featureShares, [](const auto& share) { return share.degrees < 1; }))
         loaded.featureShares.clear();
@@ -179,7 +179,7 @@ void writeTruth(const PlannedReference& reference, const fs::path& folder) {
           {{"kind", "truth"},
            {"bias_ledger", Json::array()},
            {"feature_shares",
-            sharesJson(reference.scene->scene.features, exactShares(reference.scene->generator->featureShares()))}});
+            sharesJson(reference.scene->features, exactShares(reference.scene->generator->featureShares()))}});
 }
 
 void writeFromFile(const PlannedReference& reference, const fs::path& folder) {
@@ -187,7 +187,7 @@ void writeFromFile(const PlannedReference& reference, const fs::path& folder) {
     checkSize(reference, image, reference.spec.image);
     checkSize(reference, variance, reference.spec.variance);
     requireVariance(variance, reference.spec.variance);
-    const Features& features = reference.scene->scene.features;
+    const Features& features = reference.scene->features;
     write(reference, folder, image, variance,
           {{"kind", "file"},
            {"source", reference.spec.image.string()},
@@ -204,7 +204,7 @@ void addShares(std::vector<statistics::MeanEstimate>& shares, const Json& result
     addValues(shares, own);
 }
 
-void addBiases(std::vector<std::string>& ledger, const Json& result, const Scene& scene) {
+void addBiases(std::vector<std::string>& ledger, const Json& result, const PlannedScene& scene) {
     const auto isIn = [](const std::vector<std::string>& known, const std::string& bias) {
         return std::ranges::find(known, bias) != known.end();
     };
@@ -265,7 +265,7 @@ fs::path partsFolder(const PlannedReference& reference, const fs::path& runDir) 
 
 void finishReference(const PlannedReference& reference, const fs::path& runDir) {
     const fs::path folder = referenceFolder(reference, runDir);
-    const Scene& scene = reference.scene->scene;
+    const PlannedScene& scene = *reference.scene;
     CombinedParts combined;
     std::vector<statistics::MeanEstimate> shares;
     std::vector<std::string> biasLedger;

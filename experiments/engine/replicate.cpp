@@ -18,9 +18,10 @@ constexpr const char* kFailureFile = "failed.json";
 /// What the analysis reads is there and is a number. Fails with InvalidConfig where it is not.
 void checkNumbers(const JsonNode& result) {
     for (const char* field : {"wall_seconds", "cpu_seconds", "setup_seconds", "seeding_seconds", "rays", "samples",
-                              "mutations", "chains", "normalization", "feature_jumps"})
+                              "mutations", "chains", "normalization"})
         result.at(field).number();
     for (const auto& [feature, energy] : result.at("feature_energy").members()) energy.number();
+    for (const auto& [feature, count] : result.at("feature_jumps").members()) count.unsignedInteger();
     for (const auto& [cause, count] : result.at("non_finite").members()) count.unsignedInteger();
     for (const auto& [mutation, statistics] : result.at("mutation_statistics").members()) {
         for (const char* count : {"proposed", "accepted", "zero"}) statistics.at(count).unsignedInteger();
@@ -46,7 +47,7 @@ void checkSnapshots(const Task& task, const JsonNode& snapshots, const fs::path&
 RunIdentity identityOf(const Task& task, int replicate, int threads) {
     RunIdentity run;
     run.scene = task.scene->name;
-    run.sceneHash = task.scene->scene.hash;
+    run.sceneHash = task.scene->hash;
     run.sampler = task.sampler;
     run.parameters = task.parameters;
     run.seed = task.seed;
@@ -94,7 +95,7 @@ std::optional<FinishedReplicate> finishedReplicate(const Task& task, int replica
 void writeReplicate(const Task& task, int replicate, const fs::path& taskFolder, int threads,
                     const RenderResult& result) {
     const RunIdentity run = identityOf(task, replicate, threads);
-    Json fields = resultJson(run, result, task.scene->scene.features);
+    Json fields = resultJson(run, result, task.scene->features);
     fields["budget"] = budgetJson(task.budget);
     fields["task_hash"] = task.hash();
     fields["traces"] = chainFileJson(result.statistics.traces);
@@ -105,7 +106,7 @@ RenderResult renderTask(const Task& task, RenderOptions options) {
     options.budget = task.budget;
     options.snapshots = task.snapshots;
     const auto sampler = Registry<Sampler>::instance().create(JsonNode(task.parameters));
-    return render(task.scene->scene, *sampler, options);
+    return render(*task.scene->scene(), *sampler, options);
 }
 
 bool renderReplicate(const Task& task, int replicate, const fs::path& taskFolder, int threads,

@@ -65,9 +65,11 @@ Json resultJson(const RunIdentity& run, const RenderResult& result, const Featur
     const RenderStatistics& s = result.statistics;
     Json mutations = Json::object();
     for (const auto& [name, statistics] : s.mutationStatistics) mutations[name] = mutationJson(statistics);
-    Json energy = Json::object();
+    Json energy = Json::object(), jumps = Json::object();
     for (std::size_t i = 0; i < std::min(features.names.size(), s.featureEnergy.size()); ++i)
         energy[features.names[i]] = s.featureEnergy[i];
+    for (std::size_t i = 0; i < std::min(features.names.size(), s.featureJumps.size()); ++i)
+        jumps[features.names[i]] = s.featureJumps[i];
     const Json repeat = repetition(run, result);
     Json nonFinite = Json::array();
     for (const NonFiniteEvent& event : s.nonFinite.first())
@@ -109,7 +111,7 @@ Json resultJson(const RunIdentity& run, const RenderResult& result, const Featur
         {"normalization_std_error", s.normalizationStandardError},
         {"mutation_statistics", mutations},
         {"feature_energy", energy},
-        {"feature_jumps", s.featureJumps},
+        {"feature_jumps", jumps},
         {"non_finite", s.nonFinite.counts()},
         {"non_finite_first", std::move(nonFinite)},
         {"bias_ledger", s.biasLedger},

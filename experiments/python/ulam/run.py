@@ -136,7 +136,8 @@ class Run:
 
     @cached_property
     def features(self) -> pd.DataFrame:
-        """A row a cell and feature of its scene: `share` of the image's energy, `truth`, `jumps_per_million` mutations."""
+        """A row a cell and feature of its scene: `share` of the image's energy, `truth`, and
+        `jumps_per_million` mutations that brought a chain to it from another feature."""
         return self._frame(
             tables.feature_rows,
             ["cell", "feature"],

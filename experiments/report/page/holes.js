@@ -93,7 +93,7 @@ function describeHole(hole) {
         ),
         isNumber(hole.p_adjusted) && line(`p = ${pValue(hole.p_adjusted)}${hole.wrong ? ", significantly wrong" : ""}`),
         isNumber(hole.relative_sd) && line(`relative standard deviation over runs ${percent(hole.relative_sd)}`),
-        isNumber(hole.jumps_per_million) && line(`${number(hole.jumps_per_million)} jumps per million mutations`),
+        isNumber(hole.jumps_per_million) && line(`${number(hole.jumps_per_million)} jumps to it per million mutations`),
     ].filter(Boolean);
 }
 
@@ -167,7 +167,7 @@ function occupancyCard(cell, scales) {
                 "div",
                 { class: "small-maps" },
                 small("relative_sd", scales.sd, "spread over runs", percent),
-                small("jumps_per_million", scales.jumps, "jumps ∕ 10⁶ mut.", number),
+                small("jumps_per_million", scales.jumps, "jumps to it ∕ 10⁶ mut.", number),
             ),
         ),
     );
@@ -200,7 +200,7 @@ function featureTable(group) {
             alarm: (f) => isNumber(f.p_adjusted) && f.p_adjusted <= 0.05,
         },
         { title: "spread over runs", value: (f) => f.relative_sd, show: (f) => percent(f.relative_sd) },
-        { title: "jumps ∕ 10⁶ mutations", value: (f) => f.jumps_per_million },
+        { title: "jumps to it ∕ 10⁶ mutations", value: (f) => f.jumps_per_million },
     ];
     return sortableTable(`features of ${group.title}`, columns, rows);
 }
@@ -246,7 +246,7 @@ function occupancySection() {
                             colourBar(
                                 (t) => viridis(t),
                                 rootScale(scales.jumps, number),
-                                "jumps per million mutations",
+                                "jumps to a hole per million mutations",
                             ),
                     ),
                 el(

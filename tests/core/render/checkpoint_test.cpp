@@ -130,6 +130,7 @@ void checkSame(const RenderResult& a, const RenderResult& b) {
     CHECK(s.chains == t.chains);
     CHECK(s.normalization == t.normalization);
     CHECK(s.featureEnergy == t.featureEnergy);
+    CHECK(s.featureJumps == t.featureJumps);
     CHECK(s.seedingRays == t.seedingRays);
     CHECK(s.diagnostics == t.diagnostics);
     REQUIRE(s.mutationStatistics.size() == t.mutationStatistics.size());

@@ -60,6 +60,7 @@ TEST_CASE("the same work gives the same bytes with 1, 2, 3 and 8 threads") {
             CHECK(many.units == one.units);
             CHECK(many.statistics.rays == one.statistics.rays);
             CHECK(many.statistics.featureEnergy == one.statistics.featureEnergy);
+            CHECK(many.statistics.featureJumps == one.statistics.featureJumps);
             CHECK(sameBytes(many.image, one.image));
         }
     }

@@ -1,7 +1,9 @@
 #include "experiments/engine/plan.h"
 
+#include <limits>
 #include <set>
 
+#include "core/base/memory.h"
 #include "tests/experiments/engine/tiny.h"
 #include "tests/support/catch.h"
 
@@ -52,17 +54,42 @@ TEST_CASE("a sweep leads into the files of scenes", "[plan]") {
     writeFileAtomically(folder / "below/scene.json", scene.dump());
     Json experiment = tinyExperiment();
     experiment["scenes"]["wall"] = "below/scene.json";
-    const std::string unchanged = planOf(folder, experiment).cells[0].task.scene->scene.hash;
+    const std::string unchanged = planOf(folder, experiment).cells[0].task.scene->hash;
     for (const Json& sweep : {Json{{"scenes.wall.lamp.emitter.radiance", {4, 8}}}, Json{{"zip", {{"scenes.wall.lamp.emitter.radiance", {4, 8}}}}}}) {
         experiment["sweep"] = sweep;
         const Plan plan = planOf(folder, experiment);
         REQUIRE(plan.cells.size() == 4);
-        CHECK(plan.cells[0].task.scene->scene.hash == unchanged);
-        CHECK(plan.cells[2].task.scene->scene.hash != unchanged);
+        CHECK(plan.cells[0].task.scene->hash == unchanged);
+        CHECK(plan.cells[2].task.scene->hash != unchanged);
         CHECK(plan.experiment["scenes"]["wall"] == "below/scene.json");
     }
     experiment["sweep"] = {{"scenes.wall.lamp.emitter.radianc", {4}}};
     CHECK(mentions(errorOf([&] { planOf(folder, experiment); }).message, "did you mean \"radiance\"?"));
+}
+
+TEST_CASE("a scene is built again where others took its place, and is the same", "[plan]") {
+    const Folder folder;
+    Json scene = tinyScene();
+    scene["mesh"] = {{"type", "obj"}, {"filename", "mesh.obj"}};
+    writeFileAtomically(folder / "mesh.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    Json experiment = tinyExperiment();
+    experiment["scenes"]["wall"] = scene;
+    experiment["sweep"] = {{"scenes.wall.lamp.emitter.radiance", {4, 8}}};
+    limitMemory(std::uint64_t(1) << 40);  // one scene alone is kept
+    const Plan plan = planOf(folder, experiment);
+    const PlannedScene &first = *plan.cells[0].task.scene, &last = *plan.cells[3].task.scene;
+    std::weak_ptr<const Scene> built = last.scene();
+    CHECK(built.lock() == last.scene());
+    CHECK(first.scene()->hash == first.hash);
+    CHECK(built.expired());
+    CHECK(last.scene()->hash == last.hash);
+    writeFileAtomically(folder / "mesh.obj", "v 0 0 0\nv 1 0 0\nv 0 2 0\nf 1 2 3\n");
+    CHECK(mentions(errorOf([&] { first.scene(); }).message, "files of a scene have changed"));
+    limitMemory(std::numeric_limits<std::uint64_t>::max());
+    const Plan changed = planOf(folder, experiment);
+    built = changed.cells[0].task.scene->scene();
+    CHECK(changed.cells[3].task.scene->scene() != built.lock());
+    CHECK(changed.cells[0].task.scene->scene() == built.lock());
 }
 
 TEST_CASE("names of cells are short enough for file systems", "[plan]") {

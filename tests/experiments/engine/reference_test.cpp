@@ -333,10 +333,10 @@ TEST_CASE("a reference knows the biases of its sampler, not those of the scene",
     Json experiment = tinyExperiment();
     // Light tracing does not show what is seen in a mirror.
     experiment["scenes"]["wall"]["mirror"] = {{"type", "sphere"}, {"radius", 0.5}, {"bsdf", {{"type", "conductor"}}}};
+    experiment["scenes"]["wall"]["$substitutions"] = Json::array({"a substitution"});
     const auto ledger = [&](const char* sampler) {
         experiment["reference"]["sampler"] = sampler;
         const Plan plan = planOf(folder, experiment);
-        std::const_pointer_cast<PlannedScene>(plan.references[0].scene)->scene.substitutions = {"a substitution"};
         runIn(folder, plan);
         return readReference(plan.references[0], folder / "run").biasLedger;
     };

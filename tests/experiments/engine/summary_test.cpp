@@ -260,6 +260,32 @@ TEST_CASE("features come with their truth", "[summary]") {
     CHECK(sum == Approx(1));
 }
 
+TEST_CASE("jumps of chains are counted where they lead to", "[summary]") {
+    const Folder folder;
+    Json experiment = tinyExperiment();
+    experiment["scenes"] = {
+        {"emitter", {{"type", "grid_of_holes"}, {"holes", 2}, {"back", "emitter"}, {"thickness", 0}}}};
+    experiment["film"]["rfilter"] = {{"type", "box"}};
+    experiment["reference"] = "truth";
+    experiment["max_depth"] = 2;
+    experiment["budget"]["spp"] = 64;
+    // Every proposal is independent of the state, so that three of four accepted ones lead to another of four like
+    // holes.
+    experiment["samplers"]["bdpt"] = {{"type", "pssmlt"}, {"mutations", {{"large_step", {{"weight", 1}}}}}};
+    const Json summary = summaryOf(folder, experiment);
+    const auto cell = std::ranges::find(summary["cells"], "emitter-bdpt", [](const Json& c) { return c["cell"]; });
+    REQUIRE(cell != summary["cells"].end());
+    const Json& largeStep = (*cell)["mutation_statistics"]["large_step"];
+    const double accepted = 1e6 * largeStep["accepted"].get<double>() / largeStep["proposed"].get<double>();
+    double sum = 0;
+    for (const auto& [name, feature] : (*cell)["features"].items()) {
+        const double jumps = feature["jumps_per_million"];
+        sum += jumps;
+        CHECK(jumps == Approx(accepted * 3 / 16).epsilon(0.1));
+    }
+    CHECK(sum == Approx(accepted * 3 / 4).epsilon(0.03));
+}
+
 TEST_CASE("chains report their mutations", "[summary]") {
     const Folder folder;
     Json experiment = tinyExperiment();
