@@ -9,6 +9,7 @@ namespace {
 
 // Standard error of the median of normal values, from their median absolute deviation and the root of their number.
 const double kMedianError = 1.4826 * std::sqrt(kPi / 2);
+constexpr const char* kSeveralBranches = " (one branch of several)";
 
 double quantile(std::vector<double> values, double q) {
     const auto place = values.begin() + std::ptrdiff_t(q * double(values.size()));
@@ -114,7 +115,7 @@ private:
         tally_.notSquare += branch.outcome == Branch::Outcome::NotSquare;
         if (branch.outcome != Branch::Outcome::Resolved) return;
         const std::string key =
-            fmt::format("{} {}{}", pathClass(path), branch.moved, branch.only ? "" : " (one branch of several)");
+            fmt::format("{} {}{}", pathClass(path), branch.moved, branch.only ? "" : kSeveralBranches);
         tally_.classes[key].push_back({stated - branch.logDensity, branch.only, state_, trial});
     }
 
@@ -148,6 +149,31 @@ JacobianTally auditJacobian(const AuditScene& scene, const Subject& subject, con
     return tally;
 }
 
+namespace {
+
+using Comparisons = std::vector<JacobianTally::Comparison>;
+
+std::map<uint64_t, std::vector<double>> excessByState(const Comparisons& comparisons) {
+    std::map<uint64_t, std::vector<double>> byState;
+    for (const auto& c : comparisons) byState[c.state].push_back(c.excess);
+    return byState;
+}
+
+/// Classes with too few states to be judged are put together with others of paths of their length: each alone may be
+/// rare, as long paths are, and all be wrong.
+std::map<std::string, Comparisons> judgedTogether(const JacobianTally& tally) {
+    std::map<std::string, Comparisons> together;
+    for (const auto& [key, comparisons] : tally.classes) {
+        const std::string rare =
+            fmt::format("{} vertices, rare shapes{}", key.find(' '), comparisons.front().only ? "" : kSeveralBranches);
+        Comparisons& all = together[excessByState(comparisons).size() < kFewestStates ? rare : key];
+        all.insert(all.end(), comparisons.begin(), comparisons.end());
+    }
+    return together;
+}
+
+}  // namespace
+
 JacobianVerdict judge(const JacobianTally& tally) {
     JacobianVerdict verdict;
     if (double(tally.notInverted) > kNotInvertedShare * double(tally.inversions))
@@ -155,10 +181,8 @@ JacobianVerdict judge(const JacobianTally& tally) {
                              fmt::format("{} of {} states have no numbers that make them again", tally.notInverted, tally.inversions));
     if (double(tally.moved) > kMovedShare * double(tally.plain))
         verdict.failures.add(tally.firstMoved, fmt::format("{} of {} states move when they are made again from their numbers", tally.moved, tally.plain));
-    for (const auto& [key, comparisons] : tally.classes) {
-        // What one state says again and again is said once.
-        std::map<uint64_t, std::vector<double>> byState;
-        for (const auto& c : comparisons) byState[c.state].push_back(c.excess);
+    for (const auto& [key, comparisons] : judgedTogether(tally)) {
+        const auto byState = excessByState(comparisons);
         if (byState.size() < kFewestStates) {
             ++verdict.unjudged;
             continue;
@@ -167,6 +191,7 @@ JacobianVerdict judge(const JacobianTally& tally) {
         verdict.comparisons += comparisons.size();
         const bool only = comparisons.front().only;
         if (only) verdict.equalities += comparisons.size();
+        // What one state says again and again is said once.
         std::vector<double> excess, distance, deviation;  // of states, of comparisons, of states
         for (const auto& [state, values] : byState) excess.push_back(median(values));
         const double shift = median(excess), wrong = only ? std::abs(shift) : std::max(0.0, -shift);

@@ -3,8 +3,8 @@
 // random numbers (number_map.h).
 //
 // The map is single-precision geometry, so single comparisons carry noise. They are sorted by the shape of the path and
-// what of it moved, and the median of each class is judged. Where several choices can make the same path the density of
-// one branch only bounds the stated one from below.
+// what of it moved, and the median of each class is judged, of rare ones together. Where several choices can make the
+// same path the density of one branch only bounds the stated one from below.
 
 #include <map>
 

@@ -126,6 +126,22 @@ TEST_CASE("A density that lacks its measure balances with itself, but not with t
     CHECK(smallestInvarianceP("planted_geometry", "diffuse", 40'000) < 1e-6);
 }
 
+TEST_CASE("Classes too rare to be judged are judged with others of their length") {
+    const auto verdict = [](double excess, const char* lastClass) {
+        JacobianTally tally;
+        for (uint64_t s = 0; s < kFewestStates; ++s) {
+            const std::string key = s + 1 < kFewestStates ? fmt::format("SRSS{}P +++", s) : lastClass;
+            tally.classes[key].push_back({excess, true, s, s});
+        }
+        return judge(tally);
+    };
+    CHECK(verdict(0.05, "SSSSSP +++").failures.count() == 1);
+    CHECK(verdict(0, "SSSSSP +++").failures.count() == 0);
+    CHECK(verdict(0.05, "SSSSSP +++").classes == 1);
+    CHECK(verdict(0.05, "SSSP +++").unjudged == 2);  // another length
+    CHECK(verdict(0.05, "SSSP +++").failures.count() == 0);
+}
+
 TEST_CASE("Swapped densities are found") {
     CHECK(audited("planted_swapped", "diffuse").jacobian.failures.count() > 0);
     CHECK(smallestInvarianceP("planted_swapped", "diffuse", 40'000) < 1e-6);
