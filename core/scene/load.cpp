@@ -241,7 +241,7 @@ Scene SceneBuilder::build(const JsonNode& film) {
 struct SceneDescription::Content {
     JsonNode dictionary;
     std::filesystem::path folder;
-    std::unique_ptr<Generator> generator;
+    std::shared_ptr<const Generator> generator;
 };
 
 JsonDocument readSceneDocument(const std::filesystem::path& file, const SceneFileOptions& options) {
@@ -286,8 +286,8 @@ const std::filesystem::path& SceneDescription::folder() const {
     return content_->folder;
 }
 
-const Generator* SceneDescription::generator() const {
-    return content_->generator.get();
+const std::shared_ptr<const Generator>& SceneDescription::generator() const {
+    return content_->generator;
 }
 
 Scene SceneDescription::build(const Json& film) const {

@@ -28,8 +28,8 @@ public:
     const Json& dictionary() const;
     /// Where relative paths in the dictionary start from.
     const std::filesystem::path& folder() const;
-    /// The generator it came from, or null.
-    const Generator* generator() const;
+    /// The generator it came from, or null. It outlives the description.
+    const std::shared_ptr<const Generator>& generator() const;
 
     /// Builds the scene. Keys of `film` (width, height, crop_*, rfilter), if given, override those in the sensor's film.
     /// Every value is validated; errors name file and place.

@@ -145,8 +145,7 @@ private:
                                       description.folder(), e.film);
         planned->description = scene.node.isString() ? description.dictionary() : scene.node.json();
         if (description.generator()) {
-            // Shares the description, which owns the generator.
-            planned->generator = {std::make_shared<SceneDescription>(description), description.generator()};
+            planned->generator = description.generator();
             if (scene.node.isObject()) {
                 const JsonNode type = scene.node.at("type");
                 planned->description.update(
