@@ -29,6 +29,18 @@ Json summaryOf(const Folder& folder, const Json& experiment) {
     return summarize(plan, folder / "run", {});
 }
 
+/// Four like holes before an emitter, whose image is known.
+Json fourHoles() {
+    Json experiment = tinyExperiment();
+    experiment["scenes"] = {
+        {"emitter", {{"type", "grid_of_holes"}, {"holes", 2}, {"back", "emitter"}, {"thickness", 0}}}};
+    experiment["film"]["rfilter"] = {{"type", "box"}};
+    experiment["reference"] = "truth";
+    experiment["max_depth"] = 2;
+    experiment["budget"]["spp"] = 64;
+    return experiment;
+}
+
 }  // namespace
 
 TEST_CASE("the summary has what scripts and the report read", "[summary]") {
@@ -239,14 +251,7 @@ TEST_CASE("results of unlike machines in one comparison are told of", "[summary]
 
 TEST_CASE("features come with their truth", "[summary]") {
     const Folder folder;
-    Json experiment = tinyExperiment();
-    experiment["scenes"] = {
-        {"emitter", {{"type", "grid_of_holes"}, {"holes", 2}, {"back", "emitter"}, {"thickness", 0}}}};
-    experiment["film"]["rfilter"] = {{"type", "box"}};
-    experiment["reference"] = "truth";
-    experiment["max_depth"] = 2;
-    experiment["budget"]["spp"] = 64;
-    const Json summary = summaryOf(folder, experiment);
+    const Json summary = summaryOf(folder, fourHoles());
     const Json& cell = summary["cells"][0];
     CHECK(cell["feature_grid"] == Json{2, 2});
     REQUIRE(cell["features"].size() == 4);
@@ -262,13 +267,7 @@ TEST_CASE("features come with their truth", "[summary]") {
 
 TEST_CASE("jumps of chains are counted where they lead to", "[summary]") {
     const Folder folder;
-    Json experiment = tinyExperiment();
-    experiment["scenes"] = {
-        {"emitter", {{"type", "grid_of_holes"}, {"holes", 2}, {"back", "emitter"}, {"thickness", 0}}}};
-    experiment["film"]["rfilter"] = {{"type", "box"}};
-    experiment["reference"] = "truth";
-    experiment["max_depth"] = 2;
-    experiment["budget"]["spp"] = 64;
+    Json experiment = fourHoles();
     // Every proposal is independent of the state, so that three of four accepted ones lead to another of four like
     // holes.
     experiment["samplers"]["bdpt"] = {{"type", "pssmlt"}, {"mutations", {{"large_step", {{"weight", 1}}}}}};
