@@ -27,6 +27,7 @@ struct PlannedScene {
     double setupSeconds = 0;
     BuildScene build;
 
+    /// Built again where it is not in memory (see sceneFor).
     std::shared_ptr<const Scene> scene() const { return sceneFor(hash, build); }
 };
 

@@ -372,12 +372,7 @@ TEST_CASE("a file is a reference if its variance stands beside it", "[reference]
 
 TEST_CASE("a generator's truth has no variance, and knows the features' shares", "[reference]") {
     const Folder folder;
-    Json experiment = tinyExperiment();
-    experiment["scenes"] = {
-        {"emitter", {{"type", "grid_of_holes"}, {"holes", 2}, {"back", "emitter"}, {"thickness", 0}}}};
-    experiment["film"]["rfilter"] = {{"type", "box"}};
-    experiment["reference"] = "truth";
-    experiment["max_depth"] = 2;
+    Json experiment = fourHoles();
     const Plan plan = planOf(folder, experiment);
     REQUIRE(prepareReference(plan.references[0], folder / "run"));
     const Reference reference = readReference(plan.references[0], folder / "run");

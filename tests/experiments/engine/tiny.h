@@ -55,6 +55,17 @@ inline Json tinyExperiment() {
             {"reference", {{"sampler", "bdpt"}, {"budget", {{"spp", 256}}}, {"part", {{"spp", 32}}}}}};
 }
 
+/// The same of four like holes before an emitter, whose image is known.
+inline Json fourHoles() {
+    Json experiment = tinyExperiment();
+    experiment["scenes"] = {
+        {"emitter", {{"type", "grid_of_holes"}, {"holes", 2}, {"back", "emitter"}, {"thickness", 0}}}};
+    experiment["film"]["rfilter"] = {{"type", "box"}};
+    experiment["reference"] = "truth";
+    experiment["max_depth"] = 2;
+    return experiment;
+}
+
 /// Written to a file and planned from there, as the program does.
 inline Plan planOf(const Folder& folder, const Json& experiment) {
     const std::filesystem::path file = folder / "experiment.json";
